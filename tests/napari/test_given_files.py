@@ -128,6 +128,13 @@ def test_what_cannot_be_used_is_refused_with_a_remedy(
         (SignalError, "choose a layer of an image", labels, (labels,)),
         (ReadError, "Split RGB", labels, (layers.Image(np.zeros((9, 9, 3), np.uint8), rgb=True),)),
         (ReadError, "is moved .* set its translate", labels, (layers.Image(signal, translate=(0, 0, 2)),)),
+        (
+            ReadError,
+            "is moved",
+            layers.Labels(stack, scale=(1, 200, 200), units=("s", "nm", "nm"), translate=(0, 1, 1)),
+            (layers.Image(signal, **MICROMETRES, translate=(0, 1, 1)),),
+        ),
+        (ReadError, "is mirrored", labels, (layers.Image(signal, scale=(1, -1, 1)),)),
         (ReadError, "another time", labels, (layers.Image(signal, translate=(1, 0, 0)),)),
         (
             ReadError,
@@ -142,6 +149,17 @@ def test_what_cannot_be_used_is_refused_with_a_remedy(
     for kind, words, masks, images in refused:
         with pytest.raises(kind, match=words):
             given(tmp_path, masks, *images)
+
+
+def test_places_are_compared_in_pixels_whatever_the_unit(
+    tmp_path: Path, stack: np.ndarray, signal: np.ndarray
+) -> None:
+    image = layers.Image(signal, scale=(60, 0.2, 0.2), units=("s", "um", "um"), translate=(60, 1, 2))
+    labels = layers.Labels(stack, scale=(1, 200, 200), units=("min", "nm", "nm"), translate=(1, 1000, 2000))
+
+    assert given(tmp_path, labels, image).scale == cd.Scale(0.2, 60.0)
+    bare = layers.Labels(stack, translate=(1, 5, 10))
+    assert given(tmp_path, bare, image).scale == cd.Scale(0.2, 60.0)
 
 
 def test_a_z_stack_keeps_its_axes_and_the_library_refuses_it(tmp_path: Path, stack: np.ndarray) -> None:

@@ -278,6 +278,18 @@ def test_a_study_is_saved_into_a_new_folder_only(
     qtbot.waitUntil(lambda: widget.work.done, timeout=20_000)
 
     assert "is not empty: choose a new folder" in notification_manager.records[-1].message
+    for inside in (widget.made.study.path / "maps" / "kept", widget.made.work.path / "kept"):
+        widget.save(inside)
+        qtbot.waitUntil(lambda: widget.work.done, timeout=20_000)
+        assert "which goes when you close the viewer" in notification_manager.records[-1].message
+    other = opened(viewer, MapCells)  # goes on with the same study
+    widget.open_report()
+    other.save(tmp_path / "elsewhere")
+    assert "another widget works with this study" in notification_manager.records[-1].message
+    assert (other.work, other.made.is_in_use) == (None, True)
+    widget.bar.cancel_button.click()
+    qtbot.waitUntil(lambda: widget.work.done, timeout=20_000)
+    assert not other.made.is_in_use
     assert not widget.made.is_saved
     assert widget.results.save_button.isEnabled()
     assert (tmp_path / "mine" / "thesis.txt").read_text() == "all of it"

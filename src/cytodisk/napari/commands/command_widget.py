@@ -27,7 +27,7 @@ from cytodisk.napari.napari_versions import plain_viewer
 from cytodisk.napari.qt_fault import warn_of_qt
 from cytodisk.napari.scrolled import scrolled
 from cytodisk.napari.study_layers.shown_study import ShownStudy
-from cytodisk.napari.viewer_parts import show_info
+from cytodisk.napari.viewer_parts import show_error, show_info
 from cytodisk.napari.work.background import Reporter, Work, run_in_background
 from cytodisk.napari.work.work_bar import WorkBar
 from cytodisk.store.study import Study
@@ -118,7 +118,7 @@ class CommandWidget(QWidget):
             made.saved.emit()
             show_info(f"saved: {made.study.path}")
 
-        self.start(save, saved)
+        self.start(save, saved, of=made)
 
     def open_report(self) -> None:
         """Write the page of the study, and open it in the browser."""
@@ -132,10 +132,17 @@ class CommandWidget(QWidget):
             report.stage("Writing the report", "frames" if study.is_movie else "cells")
             return write_report(study, progress=report)
 
-        self.start(write, lambda page: webbrowser.open(page.absolute().as_uri()))
+        found = self.savable()
+        of = None if found is None else found[0]
+        self.start(write, lambda page: webbrowser.open(page.absolute().as_uri()), of=of)
 
-    def start(self, function: Any, done: Any, *, unit: str = "cells", words: str = "") -> None:
-        """Do something in a thread; meanwhile nothing else can be started here."""
+    def start(
+        self, function: Any, done: Any, *, of: MadeStudy | None = None, unit: str = "cells", words: str = ""
+    ) -> None:
+        """Do something in a thread; meanwhile nothing else can be started here, nor with the same study."""
+        if of is not None and of.is_in_use:
+            show_error("another widget works with this study: wait until it is done, or cancel it there")
+            return
         self._lock(True)
 
         def finish(result: Any) -> None:
@@ -145,6 +152,8 @@ class CommandWidget(QWidget):
         self.work = run_in_background(
             self.bar, function, done=finish, failed=lambda: self._lock(False), unit=unit, words=words
         )
+        if of is not None:
+            of.last_work = self.work
 
     def _lock(self, is_busy: bool) -> None:
         for button in self.buttons:

@@ -91,6 +91,7 @@ class Correlate(CommandWidget):
         self.start(
             lambda report: run_correlation(study, names, values, flags, report),
             lambda made: self.show_made(made, shown),
+            of=made_of(shown),
             unit=PERCENT,
         )
 

@@ -16,6 +16,7 @@ from cytodisk.errors import StudyError
 from cytodisk.files import make_folder, temporary_name
 from cytodisk.napari.forms.command_line import command_line
 from cytodisk.napari.given.given_layers import GivenFiles
+from cytodisk.napari.work.background import Work
 from cytodisk.napari.work.work_folder import INPUTS, WorkFolder
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.store.provenance_file import PROVENANCE, write_json
@@ -48,6 +49,8 @@ class MadeStudy:
     warnings : list of str
         What is wrong with the files.
     flags : list of QCFlag
+    last_work : Work or None
+        What was last done with it in a thread, as saving it or its report.
     saved : Signal
         Emitted when layers and widgets follow it to the folder where it was saved.
     """
@@ -64,6 +67,12 @@ class MadeStudy:
     fault: str = ""
     warnings: list[str] = field(default_factory=list)
     flags: Sequence[QCFlag] = ()
+    last_work: Work | None = None
+
+    @property
+    def is_in_use(self) -> bool:
+        """Whether something is being done with it, so that its folder must stay as it is."""
+        return self.last_work is not None and not self.last_work.done
 
     @property
     def is_saved(self) -> bool:
@@ -102,9 +111,14 @@ class MadeStudy:
         Raises
         ------
         StudyError
-            The folder holds something, or cannot be written.
+            The folder holds something, cannot be written, or lies in the one that goes with the viewer.
         """
         assert self.work is not None  # it is saved once
+        if target.resolve().is_relative_to(self.work.path.resolve()):
+            raise StudyError(
+                f"{target} lies in the folder {self.work.path}, which goes when you close the viewer: "
+                "choose a folder elsewhere"
+            )
         if target.exists() and (not target.is_dir() or any(target.iterdir())):
             raise StudyError(f"{target} is not empty: choose a new folder, so that nothing is replaced")
         new = target.with_name(temporary_name())

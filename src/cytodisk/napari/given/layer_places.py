@@ -9,8 +9,9 @@ import numpy as np
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError
 from cytodisk.images.scale_units import micrometres
+from cytodisk.napari.given.layer_axes import time_axis
 
-_MOVED = 0.01  # of a pixel that layers may be moved against each other
+_MOVED = 0.01  # pixels, or frames, that layers may be moved against each other
 
 
 def check_places(masks: Any, other: Any) -> None:
@@ -28,18 +29,18 @@ def check_places(masks: Any, other: Any) -> None:
     """
     if not _same_scale(masks, other):
         raise _fault(masks, other, "has other pixels than", f"{masks.name}.scale = {other.name}.scale")
+    if (_signs(masks) != _signs(other)).any():
+        raise _fault(masks, other, "is mirrored against", "give both a scale above 0")
     if not np.allclose(_turn(masks), _turn(other), atol=1e-6):
         raise _fault(masks, other, "is turned or sheared against", "take its rotate, shear and affine out")
-    size = np.abs(np.asarray(masks.scale, dtype=float)[-2:])
     moved = _corner(masks) - _corner(other)
-    if (np.abs(moved) > _MOVED * size).any():
+    if (np.abs(moved) > _MOVED).any():
         words = " and ".join(f"{value:.3g}" for value in moved)
         raise _fault(
-            masks, other, f"is moved (by {words} in y and x) against", "set its translate to the same"
+            masks, other, f"is moved (by {words} px in y and x) against", "set its translate to the same"
         )
-    both = min(masks.ndim, other.ndim)
-    times = [np.asarray(one.translate, dtype=float)[-both:-2] for one in (masks, other)]
-    if not np.allclose(times[0], times[1]):
+    begins = [first for one in (masks, other) if (first := _first_frame(one)) is not None]
+    if len(begins) > 1 and abs(begins[0] - begins[1]) > _MOVED:
         raise _fault(masks, other, "begins at another time than", "set its translate to the same")
 
 
@@ -74,9 +75,21 @@ def _turn(layer: Any) -> FloatArray:
     return np.concatenate([affine.ravel(), rotate.ravel(), last])
 
 
+def _signs(layer: Any) -> FloatArray:
+    """-1 along axes that are mirrored."""
+    signs: FloatArray = np.sign(np.asarray(layer.scale, dtype=float)[-2:])
+    return signs
+
+
 def _corner(layer: Any) -> FloatArray:
-    """Where the centre of the first pixel lies, beside turns; (y, x) in the layer's unit."""
+    """Where the centre of the first pixel lies, beside turns; (y, x) in pixels, whatever the unit."""
     affine = np.asarray(layer.affine.affine_matrix, dtype=float)[-3:-1, -1]
     translate: FloatArray = np.asarray(layer.translate, dtype=float)[-2:]
-    corner: FloatArray = translate + affine
+    corner: FloatArray = (translate + affine) / np.abs(np.asarray(layer.scale, dtype=float)[-2:])
     return corner
+
+
+def _first_frame(layer: Any) -> float | None:
+    """Where the first frame lies, in frames; None without an axis of time."""
+    axis = time_axis(layer)
+    return None if axis is None else float(layer.translate[axis] / layer.scale[axis])
