@@ -24,7 +24,7 @@ from cytodisk.napari.qt_fault import warn_of_qt
 from cytodisk.napari.scrolled import scrolled
 from cytodisk.napari.study_layers.activity_layers import activity_layers
 from cytodisk.napari.study_layers.shown_cells import sources_of
-from cytodisk.napari.study_layers.shown_study import ShownStudy, show_study, shown_studies
+from cytodisk.napari.study_layers.shown_study import ShownStudy, right_of, show_study, shown_studies
 from cytodisk.napari.viewer_parts import Layer, show_error
 from cytodisk.number_words import counted
 from cytodisk.store.study import Study, open_study
@@ -157,7 +157,7 @@ class OpenResults(QWidget):
         if self.study is None:
             return
         try:
-            layers = activity_layers(self.study.path / ACTIVITY)
+            layers = activity_layers(self.study.path / ACTIVITY, left=right_of(self.viewer.layers))
         except CytodiskError as error:
             show_error(str(error))
             return

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable
-from contextlib import suppress
 from threading import Lock, Thread
 
 from cytodisk.errors import CytodiskError
@@ -67,8 +66,14 @@ class Prefetch:
         pause = 0.0
         while (frame := self._next(pause)) is not None:
             start = time.perf_counter()
-            with suppress(CytodiskError):  # it is told when the frame is shown
+            try:
                 self._load(frame)
+            except CytodiskError:
+                pass  # it is told when the frame is shown
+            except BaseException:
+                with self._lock:
+                    self._thread = None  # the next frame begins anew
+                raise
             pause = _PAUSE * (time.perf_counter() - start)
             self._read.add(frame)
 

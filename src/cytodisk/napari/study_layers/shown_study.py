@@ -14,6 +14,8 @@ from cytodisk.napari.viewer_parts import Layer, show_error, show_warning
 from cytodisk.store.study import Study
 from cytodisk.store.study_kind import ACTIVITY
 
+_ASIDE = 1.05  # times as far right as what is open
+
 
 def show_study(viewer: Any, study: Study, *, source: str | None = None) -> ShownStudy:
     """Add a study's results to a viewer; of a movie without maps its activity over time.
@@ -61,9 +63,18 @@ def layers_of(shown: ShownStudy, beside: Iterable[Any] = ()) -> list[LayerData]:
     layers = layer_data(shown, place_of(shown.cells, beside))
     if layers or not shown.study.is_movie:
         return layers
-    edges = [float(layer.extent.world[1][-1]) for layer in beside if layer.ndim > 1]
-    left = 1.05 * max(edges, default=0.0)
-    return activity_layers(shown.study.path / ACTIVITY, shown=shown, left=left)
+    return activity_layers(shown.study.path / ACTIVITY, shown=shown, left=right_of(beside))
+
+
+def right_of(layers: Iterable[Any]) -> float:
+    """Where there is room to the right of some layers, in the viewer.
+
+    Parameters
+    ----------
+    layers : iterable of Layer
+    """
+    edges = [float(layer.extent.world[1][-1]) for layer in layers if layer.ndim > 1]
+    return _ASIDE * max(edges, default=0.0)
 
 
 def attach(viewer: Any, shown: ShownStudy, n_layers: int) -> None:
