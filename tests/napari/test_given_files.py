@@ -83,6 +83,10 @@ def test_a_scale_without_a_unit_is_unknown_and_said(tmp_path: Path, stack: np.nd
     assert any("layer cells has the scale 0.2" in note and "--pixel-size 0.2" in note for note in found.notes)
     assert "pixel size: unknown, lengths are in px" in found.notes
 
+    masks = layers.Labels(stack, name="cells")
+    typed = given_files(ChosenLayers(masks), tmp_path / "typed", {"pixel_size_um": 0.2})
+    assert not any("pixel size: unknown" in note for note in typed.notes)
+
 
 def test_the_file_of_a_layer_is_used_while_it_holds_its_pixels(tmp_path: Path, stack: np.ndarray) -> None:
     path = tmp_path / "cells.ome.tif"

@@ -41,6 +41,13 @@ def test_choices_follow_the_viewer(make_viewer: Callable[..., Any]) -> None:
     viewer.layers.remove(labels)
     assert masks.layer is None
     assert heard == [image, labels, image, labels, None]
+
+    nuclei = viewer.add_labels(np.ones((8, 8), int), name="DAPI_nuclei")
+    assert masks.layer is nuclei  # there is nothing else
+    cells = viewer.add_labels(np.ones((8, 8), int), name="a")
+    assert masks.layer is cells
+    viewer.layers.remove(cells)
+    viewer.layers.remove(nuclei)
     masks.close_down()
     viewer.add_labels(np.ones((8, 8), int))
     assert masks.layer is None

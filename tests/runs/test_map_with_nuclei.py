@@ -99,8 +99,8 @@ def test_every_case_has_its_row() -> None:
     assert cells["n_nuclei"].tolist() == [1, 0, 2, 1, 0]
     reasons = cells["reason"].tolist()
     assert reasons[0] == (
-        "the cell shares a nucleus (of nucleus 1, 67 % lie in cell 1 and 33 % in cell 2): the border of the "
-        "cells cuts it, or two nuclei touch and count as one: correct the masks"
+        "the cell shares a nucleus (of nucleus 1, 67 % lie in label 1 and 33 % in label 2): the border of "
+        "the cells cuts it, or two nuclei touch and count as one: correct the masks"
     )
     assert reasons[1] == reasons[0]
     assert reasons[2].startswith("the cell has 2 nuclei, of 100 and 100 px: split it if")

@@ -20,6 +20,7 @@ _ASIDE_PX = 14  # how far the wrong mask reaches beyond the cell
 _CELLS, _CELL_PIXEL_UM = 16, 0.32
 _CORTEX_PX, _BRIGHT, _BACKGROUND = 4.0, 600.0, 100.0
 _CHANNEL_COLOURS = ("magenta", "green")
+_WHITE = {0: "transparent", 1: "white", None: "yellow"}  # of labels: the usual colour of 1 is too dark to see
 
 
 def movie_sample() -> list[LayerData]:
@@ -67,7 +68,7 @@ def _layers(truth: SimulatedMovie, masks: Any) -> list[LayerData]:
         )
         for name, colour in zip(signal["channel"].to_numpy(), _CHANNEL_COLOURS, strict=True)
     ]
-    return [*images, (masks, {"name": "masks", "opacity": 0.3, **place}, "labels")]
+    return [*images, (masks, {"name": "masks", "opacity": 0.3, "colormap": _WHITE, **place}, "labels")]
 
 
 def cells_sample() -> list[LayerData]:

@@ -78,7 +78,7 @@ def test_a_nucleus_belongs_to_the_cell_that_holds_most_of_it() -> None:
 def test_a_nucleus_that_two_cells_share_is_told_in_both() -> None:
     nuclei = drawn((1, 20, 30, 39, 59))  # 11 of 20 columns in cell 4, 9 in cell 9
     assert matched(nuclei) == {4: ("1", 1, "shared"), 9: ("", 0, "shared"), 2: ("", 0, "none")}
-    assert reason(nuclei, 4) == reason(nuclei, 9) == "of nucleus 1, 55 % lie in cell 4 and 45 % in cell 9"
+    assert reason(nuclei, 4) == reason(nuclei, 9) == "of nucleus 1, 55 % lie in label 4 and 45 % in label 9"
     own = nuclei + drawn((2, 35, 45, 70, 80))
     assert matched(own)[9] == ("2", 1, "ok")
 
@@ -100,7 +100,7 @@ def test_a_nucleus_without_a_cell_has_a_row() -> None:
     last = table[table["cell"].isna()]
     assert last["nuclei"].tolist() == ["1", "3"]
     assert last["status"].tolist() == ["no cell", "no cell"]
-    assert last["reason"].tolist() == ["it lies in no cell", "29 % lie in cell 4"]
+    assert last["reason"].tolist() == ["it lies in no cell", "29 % lie in label 4"]
     assert last["overlap"].tolist() == [0.0, pytest.approx(4 / 14)]
     assert table["cell"].tolist()[:3] == [2, 4, 9]
 

@@ -22,6 +22,7 @@ from cytodisk.napari.commands.follow_cells import FollowCells  # noqa: E402
 from cytodisk.napari.commands.map_cells import MapCells  # noqa: E402
 from cytodisk.napari.commands.open_widgets import layers_of  # noqa: E402
 from cytodisk.runs.demo_input import write_demo_input  # noqa: E402
+from cytodisk.runs.qc_flags.remedy import run_again, shown_path  # noqa: E402
 
 FRAMES, LAYERS, SECTORS = 16, 3, 12
 UNITS = ("second", "micrometer", "micrometer")
@@ -125,6 +126,7 @@ def test_a_movie_is_followed_saved_correlated_and_reported(
     assert follow.shown.study.path == saved.path
     assert str(own_place) not in (saved.path / "provenance.json").read_text()
     assert "saved" in follow.results.words.text()
+    assert run_again(saved, "9", sectors=9).split()[2] == shown_path(f"{saved.path}/inputs/cells.ome.tif")
     run_command(monkeypatch, follow.results.line.toPlainText())
     assert_equal_tables(saved.path, tmp_path / "saved_again")
 

@@ -106,6 +106,7 @@ def test_what_is_shown_ends_with_its_layers(movie: Study, make_viewer: Callable[
     viewer = make_viewer()
     shown = show_study(viewer, movie)
     assert shown_studies(viewer) == [shown]
+    assert not shown.layers["windows"].editable  # no brush that is meant for masks paints it
 
     viewer.layers.clear()
 

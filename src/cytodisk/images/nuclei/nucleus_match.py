@@ -157,10 +157,10 @@ class _Sharing:
         return bool((self._shares[self._by_nucleus[nucleus]] > MOST_OUTSIDE).sum() > 1)
 
     def _where(self, nucleus: int) -> str:
-        """As "55 % lie in cell 3 and 45 % in cell 4"."""
+        """As "55 % lie in label 3 and 45 % in label 4": cells of the tables have other numbers."""
         pairs = self._by_nucleus[nucleus]
         words = [
-            f"{_percent(share)} {'lie ' if number == 0 else ''}in cell {self._all.cells[cell]}"
+            f"{_percent(share)} {'lie ' if number == 0 else ''}in label {self._all.cells[cell]}"
             for number, (cell, share) in enumerate(zip(self._cells[pairs], self._shares[pairs], strict=True))
         ]
         return " and ".join(words)

@@ -153,7 +153,7 @@ class _Work:
         frames = [one.frames for reads in self._read.values() for one in reads]
         is_movie = any(letter in one.axes for one in frames for letter in f"T{UNNAMED}")
         self._values |= self._scale.values(is_movie=is_movie)
-        notes = [*self._notes, *self._scale.notes(is_movie=is_movie)]
+        notes = [*self._notes, *self._scale.notes(self._typed, is_movie=is_movie)]
         known = self._scale.known
         return GivenFiles(
             masks,

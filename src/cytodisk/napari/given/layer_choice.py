@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from qtpy.QtCore import Qt, Signal
@@ -13,6 +14,8 @@ from cytodisk.napari.given.layer_kinds import LayerKind, is_picture, is_result, 
 _WORDS = {"labels": "labels", "shapes": "shapes", "image": "image", "tracks": "tracks", "points": "points"}
 _ROW = 22  # px
 _LETTERS = 12  # of a name, for which there is room in a narrow dock
+
+_NUCLEI = re.compile("nucle|dapi|hoechst", re.IGNORECASE)  # in names of layers
 
 
 class LayerChoice(QWidget):
@@ -85,7 +88,8 @@ class LayerChoice(QWidget):
     def fitting(self) -> list[Any]:
         """Layers of the viewer that can be chosen: kinds in their order, the uppermost layer first.
 
-        Images that hold other values than 0 and one more come last where labels fit too.
+        Images that hold other values than 0 and one more come last where labels fit too. Where a layer must
+        be chosen, so do those that are called nuclei.
         """
         given = [
             one
@@ -95,8 +99,11 @@ class LayerChoice(QWidget):
         return sorted(given, key=lambda one: (self._kinds.index(layer_kind(one)), self._is_doubtful(one)))
 
     def _is_doubtful(self, layer: Any) -> bool:
-        """Whether a layer that could hold masks looks like a signal."""
-        return len(self._kinds) > 1 and layer_kind(layer) == "image" and not looks_binary(layer)
+        """Whether a layer that could hold masks of cells looks like a signal, or is called nuclei."""
+        if len(self._kinds) == 1:
+            return False
+        called_nuclei = not self._optional and _NUCLEI.search(layer.name) is not None
+        return called_nuclei or (layer_kind(layer) == "image" and not looks_binary(layer))
 
     def _refresh(self, event: Any = None) -> None:
         before = self.layers

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from cytodisk.errors import ReadError
@@ -77,8 +77,9 @@ class ScaleOfLayers:
                 found[name] = wanted
         return found
 
-    def notes(self, *, is_movie: bool) -> list[str]:
-        """What a user should know of the scale."""
+    def notes(self, typed: Mapping[str, Any], *, is_movie: bool) -> list[str]:
+        """What a user should know of the scale, beside what he typed."""
+        scale = self.known.given(**{name: typed.get(name) for name, *_ in _QUANTITIES})
         told = [f"scale: {words}" for words in self._from_file]
         for layer, said in self._said:
             told += said.notes(layer.name, self.known, is_movie=is_movie)
@@ -90,6 +91,6 @@ class ScaleOfLayers:
                         f"the layer says {used:g} {unit} a {what}, which is used; its file {file.path.name} "
                         f"says {own:g} {unit}"
                     )
-        words = self.known.words()[: 2 if is_movie else 1]
-        values = (self.known.pixel_size_um, self.known.frame_interval_s)
+        words = scale.words()[: 2 if is_movie else 1]
+        values = (scale.pixel_size_um, scale.frame_interval_s)
         return told + [line for line, value in zip(words, values, strict=False) if value is None]

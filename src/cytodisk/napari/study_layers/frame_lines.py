@@ -32,10 +32,16 @@ class FrameLines:
     Parameters
     ----------
     painted : PaintedFrames
+
+    Attributes
+    ----------
+    crowded : set of int
+        Frames of which only outlines of cells were drawn.
     """
 
     def __init__(self, painted: PaintedFrames):
         self._painted = painted
+        self.crowded: set[int] = set()
         self._kept: ByteCache[tuple[Any, ...]] = ByteCache(LINE_BYTES, _size_of)
 
     @property
@@ -63,6 +69,7 @@ class FrameLines:
         inner = [_between_windows(windows) for _, windows in shown]
         if sum(map(len, [*outlines, *inner])) > MOST_LINES:
             inner = []
+            self.crowded.add(frame)
         return self._in_frame(frame, [*outlines, *inner])
 
     def nuclei(self, frame: int) -> Any:

@@ -58,7 +58,8 @@ class FrameUpdates:
         elif role == "velocity":
             lines, colours = self._lines.edge(frame, self._top_speed)
             set_data(layer, lines)
-            layer.edge_color = colours
+            if len(colours):  # napari refuses none, and makes all white
+                layer.edge_color = colours
         elif role == "points":
             points, features = self._lines.points(frame)
             set_data(layer, points)

@@ -74,7 +74,9 @@ def _layers(shown: ShownStudy, place: StudyPlace) -> Iterator[LayerData]:
             "image",
         )
     look: dict[str, Any] = LINE_LOOK | {"edge_width": line_width(size, painted.shape)}
-    yield shown.lines.windows(first), settings("outlines", "borders of windows", **look), "vectors"
+    borders = shown.lines.windows(first)
+    name = "outlines (too many windows for lines)" if first in shown.lines.crowded else "borders of windows"
+    yield borders, settings("outlines", name, **look), "vectors"
     if painted.windows.grid.nucleus_layers:
         look |= {"edge_width": _NUCLEI * look["edge_width"], "edge_color": _NUCLEUS_COLOUR}
         yield shown.lines.nuclei(first), settings("nuclei", "outlines of nuclei", **look), "vectors"

@@ -223,6 +223,8 @@ class ShownStudy:
         self.layers[layer.metadata[MARK]["role"]] = layer
         layer.events.visible.connect(self._seen)
         without_thumbnail(layer)
+        if layer.metadata[MARK]["role"] == "windows":
+            layer.editable = False  # a brush that is meant for the masks must not paint it
         if self.viewer is None:
             self.viewer = viewer
             viewer.dims.events.current_step.connect(self._follow)

@@ -69,8 +69,9 @@ def run_again(study: Study, suffix: str, **changes: Any) -> str:
     inputs = study.provenance.get("inputs", {})
     told = {role: inputs.get(role, {}) for role in ("masks", "signal", "nuclei")}
     paths = {role: one.get("given") or one.get("path") for role, one in told.items()}
-    words = ["cytodisk", "movie" if study.is_movie else "map", shown_path(paths.pop("masks") or "masks.tif")]
-    words += [word for role, path in paths.items() if path for word in (f"--{role}", shown_path(path))]
+    masks = _from_here(study, paths.pop("masks") or "masks.tif")
+    words = ["cytodisk", "movie" if study.is_movie else "map", masks]
+    words += [word for role, path in paths.items() if path for word in (f"--{role}", _from_here(study, path))]
     words += ["--parameters", shown_path(str(study.path / PARAMETERS))]
     return shlex.join([*words, *_flags(changes), "-o", f"{shown_path(str(study.path))}_{suffix}"])
 
@@ -121,6 +122,12 @@ def shown_path(path: str) -> str:
     except ValueError:  # on another drive
         return path
     return near if len(near) < len(path) else path
+
+
+def _from_here(study: Study, path: str) -> str:
+    """The path of an input, which lies in the study itself if napari saved it."""
+    inside = study.path / path  # an absolute path stays
+    return shown_path(str(inside) if inside.exists() else path)
 
 
 def _flags(values: Mapping[str, Any]) -> list[str]:
