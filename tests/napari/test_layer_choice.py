@@ -42,10 +42,11 @@ def test_choices_follow_the_viewer(make_viewer: Callable[..., Any]) -> None:
     assert masks.layer is None
     assert heard == [image, labels, image, labels, None]
 
-    nuclei = viewer.add_labels(np.ones((8, 8), int), name="DAPI_nuclei")
-    assert masks.layer is nuclei  # there is nothing else
+    nuclei, late = viewer.add_labels(np.ones((8, 8), int), name="DAPI_nuclei"), LayerChoice(viewer, MASKS)
+    assert late.layer is nuclei  # there is nothing else
     cells = viewer.add_labels(np.ones((8, 8), int), name="a")
-    assert masks.layer is cells
+    assert late.layer is cells
+    late.close_down()
     viewer.layers.remove(cells)
     viewer.layers.remove(nuclei)
     masks.close_down()
