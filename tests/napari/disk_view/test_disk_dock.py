@@ -22,30 +22,6 @@ from cytodisk.napari.study_layers.shown_study import show_study  # noqa: E402
 LAYERS, SECTORS, PIXEL, INTERVAL = 3, 12, 0.2, 5.0
 
 
-@pytest.fixture(scope="module")
-def movie(tmp_path_factory: pytest.TempPathFactory) -> Study:
-    """Two cells in four frames; the first is in two pieces in frame 2, so it has no map there."""
-    folder = tmp_path_factory.mktemp("movie")
-    truth = cd.simulate.movie("fluctuating", frames=4, radius_px=14.0)
-    one = truth.masks.astype(np.uint8)
-    labels = np.concatenate([one, 2 * one], axis=2)
-    labels[2][:, : one.shape[2]] *= np.arange(one.shape[1])[:, None] % 30 < 15
-    signal = np.concatenate([truth.signal.to_numpy()] * 2, axis=3).astype(np.float32)
-    tifffile.imwrite(folder / "masks.tif", labels, photometric="minisblack", metadata={"axes": "TYX"})
-    tifffile.imwrite(folder / "signal.tif", signal, metadata={"axes": "TCYX"})
-    return cd.run_movie(
-        folder / "masks.tif",
-        folder / "out",
-        signal=folder / "signal.tif",
-        layers=LAYERS,
-        sectors=SECTORS,
-        kind="labels",
-        channels=("Rac1", "RhoA"),
-        pixel_size_um=PIXEL,
-        frame_interval_s=INTERVAL,
-    )
-
-
 @pytest.fixture
 def open_dock(make_viewer: Callable[..., Any], qtbot: Any) -> Callable[..., tuple[Any, Any, DiskDock]]:
     """Opens a study and the dock in a viewer with an image of the user's."""

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import tifffile
 
 import cytodisk as cd
 from cytodisk.errors import ReadError
@@ -20,30 +19,6 @@ from cytodisk.napari.study_layers import shown_study  # noqa: E402
 from cytodisk.napari.study_layers.shown_study import show_study, shown_studies  # noqa: E402
 
 FRAMES, LAYERS, SECTORS = 4, 3, 12
-
-
-@pytest.fixture(scope="module")
-def movie(tmp_path_factory: pytest.TempPathFactory) -> Study:
-    """Two cells; the first is not in frame 2, as its mask is in two pieces."""
-    folder = tmp_path_factory.mktemp("movie")
-    truth = cd.simulate.movie("fluctuating", frames=FRAMES, radius_px=14.0)
-    one = truth.masks.astype(np.uint8)
-    labels = np.concatenate([one, 2 * one], axis=2)
-    labels[2][:, : one.shape[2]] *= np.arange(one.shape[1])[:, None] % 30 < 15
-    signal = np.concatenate([truth.signal.to_numpy()] * 2, axis=3).astype(np.float32)
-    tifffile.imwrite(folder / "masks.tif", labels, photometric="minisblack", metadata={"axes": "TYX"})
-    tifffile.imwrite(folder / "signal.tif", signal, metadata={"axes": "TCYX"})
-    return cd.run_movie(
-        folder / "masks.tif",
-        folder / "out",
-        signal=folder / "signal.tif",
-        layers=LAYERS,
-        sectors=SECTORS,
-        kind="labels",
-        channels=("Rac1", "RhoA"),
-        pixel_size_um=0.2,
-        frame_interval_s=5.0,
-    )
 
 
 def test_windows_say_at_every_frame_what_the_tables_say(

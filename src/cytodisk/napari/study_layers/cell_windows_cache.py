@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import zlib
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,8 +12,8 @@ from cytodisk.arrays import IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.napari.study_layers.byte_cache import ByteCache
 from cytodisk.store.study import Study
-from cytodisk.windows.polar_windows import CellWindows, PolarGrid
-from cytodisk.windows.study_grid import polar_grid_of
+from cytodisk.windows.polar_windows import CellWindows
+from cytodisk.windows.study_grid import StudyGrids
 
 MAP_BYTES = 32 * 2**20
 """Of maps with their windows."""
@@ -68,18 +67,9 @@ class CellWindowsCache:
 
     def __init__(self, study: Study, map_bytes: int = MAP_BYTES, label_bytes: int = LABEL_BYTES):
         self.study = study
+        self._grids = StudyGrids(study.provenance)
         self._windows: ByteCache[CellWindows] = ByteCache(map_bytes, _size_of)
         self.boxes: ByteCache[LabelBox] = ByteCache(label_bytes, lambda box: len(box.packed))
-
-    @cached_property
-    def grid(self) -> PolarGrid:
-        """The study's windows on the disk; layers by depth have radii in each cell alone."""
-        return polar_grid_of(self.study.provenance)
-
-    @cached_property
-    def _plain(self) -> PolarGrid:
-        told = self.study.provenance
-        return polar_grid_of(told | {"parameters": told["parameters"] | {"nucleus_layers": None}})
 
     def windows_at(self, cell: int, frame: int) -> CellWindows:
         """Windows of a cell in a frame.
@@ -97,8 +87,7 @@ class CellWindowsCache:
 
     def _read(self, cell: int, frame: int) -> CellWindows:
         disk = self.study.map(cell, frame if self.study.is_movie else None)
-        without = disk.nucleus is None and self.grid.nucleus_layers
-        return (self._plain if without else self.grid).on(disk)
+        return self._grids.of(disk).on(disk)
 
     def map_at(self, cell: int, frame: int) -> DiskMap:
         """Map of a cell in a frame; see `windows_at`."""

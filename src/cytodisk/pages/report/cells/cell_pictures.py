@@ -29,7 +29,7 @@ from cytodisk.store.study import Study
 from cytodisk.store.study_folder import part_key
 from cytodisk.store.study_kind import MAPS
 from cytodisk.windows.polar_windows import PolarGrid
-from cytodisk.windows.study_grid import polar_grid_of
+from cytodisk.windows.study_grid import StudyGrids
 
 LONGEST_SIDE = 320
 """Of a picture, in its own pixels."""
@@ -109,7 +109,7 @@ class CellPictures:
             disk = self.study.map(cell)
             outline, shape = disk.outline_yx, disk.placed_mask.image_shape
             box = box_between(outline.min(axis=0), outline.max(axis=0), shape, LONGEST_SIDE)
-            grid = self._grid_of(disk)
+            grid = self.grids.of(disk)
             labels, radii = window_labels(disk, grid, box), self._radii(grid, disk)
         elif found is not None and (mask := _mask_of(found)) is not None:
             box, labels = _mask_labels(mask, found)
@@ -121,8 +121,8 @@ class CellPictures:
             "box": [box.top, box.left, box.height, box.width],
             "labels": pack_labels(labels),
             "windows": self._has_map(cell),  # else labels tell the mask alone
-            "plain": self._has_map(cell) and grid is not self.grid,
-            "numbers": self._numbers(cell) if self._has_map(cell) or self.grid.has_radii else None,
+            "plain": self._has_map(cell) and grid is not self.grids.usual,
+            "numbers": self._numbers(cell) if self._has_map(cell) or self.grids.usual.has_radii else None,
             "radii": radii,
             **_channels(loaded, box),
         }
@@ -131,25 +131,16 @@ class CellPictures:
         found = self.numbers.by_cell.get(cell)
         return found and {name: pack_floats(_short(values)) for name, values in found.items()}
 
-    def _grid_of(self, disk: DiskMap) -> PolarGrid:
-        """The study's grid, or that of cells that were mapped without a nucleus where others have one."""
-        return self._plain if disk.nucleus is None and self.grid.nucleus_layers else self.grid
-
     def _radii(self, grid: PolarGrid, disk: DiskMap) -> list[float] | None:
         """Of cells with radii of their own."""
-        if grid is self.grid and grid.has_radii:
+        if grid is self.grids.usual and grid.has_radii:
             return None
         return [float(radius) for radius in grid.on(disk).grid.radii]
 
     @cached_property
-    def grid(self) -> PolarGrid:
-        """The windows on the disk; layers by depth have radii in each cell alone."""
-        return polar_grid_of(self.study.provenance)
-
-    @cached_property
-    def _plain(self) -> PolarGrid:
-        told = self.study.provenance
-        return polar_grid_of(told | {"parameters": told["parameters"] | {"nucleus_layers": None}})
+    def grids(self) -> StudyGrids:
+        """The windows on the disk."""
+        return StudyGrids(self.study.provenance)
 
     def _has_map(self, cell: int) -> bool:
         return cell in self.mapped
