@@ -12,7 +12,7 @@ from cytodisk.arrays import IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.napari.study_layers.byte_cache import ByteCache
 from cytodisk.store.study import Study
-from cytodisk.windows.polar_windows import CellWindows
+from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 from cytodisk.windows.study_grid import StudyGrids
 
 MAP_BYTES = 32 * 2**20
@@ -70,6 +70,11 @@ class CellWindowsCache:
         self._grids = StudyGrids(study.provenance)
         self._windows: ByteCache[CellWindows] = ByteCache(map_bytes, _size_of)
         self.boxes: ByteCache[LabelBox] = ByteCache(label_bytes, lambda box: len(box.packed))
+
+    @property
+    def grid(self) -> PolarGrid:
+        """The study's windows on the disk; layers by depth have radii in each cell alone."""
+        return self._grids.usual
 
     def windows_at(self, cell: int, frame: int) -> CellWindows:
         """Windows of a cell in a frame.
