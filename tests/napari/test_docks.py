@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 pytestmark = pytest.mark.slow
-pytest.importorskip("cytodisk.napari.viewer_parts")
+pytest.importorskip("napari.viewer")
 
 
 def test_docks_of_cytodisk_are_tabs_and_a_dock_of_others_stays(

@@ -2,7 +2,7 @@
 
 import pytest
 
-pytest.importorskip("napari")
+pytest.importorskip("napari.viewer")
 pytest.importorskip("qtpy")
 
 pytestmark = pytest.mark.slow  # they import napari

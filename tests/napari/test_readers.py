@@ -14,7 +14,7 @@ from cytodisk.errors import ReadError
 from cytodisk.store.study import Study
 
 pytestmark = pytest.mark.slow
-pytest.importorskip("cytodisk.napari.viewer_parts")
+pytest.importorskip("napari.viewer")
 
 from cytodisk.napari.readers import get_reader  # noqa: E402
 from cytodisk.napari.study_layers.shown_study import shown_studies  # noqa: E402

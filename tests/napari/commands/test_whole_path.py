@@ -15,7 +15,7 @@ import cytodisk as cd
 from cytodisk.cli import main
 
 pytestmark = pytest.mark.slow
-pytest.importorskip("cytodisk.napari.viewer_parts")
+pytest.importorskip("napari.viewer")
 
 from cytodisk.napari.commands.correlate import Correlate  # noqa: E402
 from cytodisk.napari.commands.follow_cells import FollowCells  # noqa: E402

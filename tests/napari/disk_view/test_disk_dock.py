@@ -13,7 +13,7 @@ import cytodisk as cd
 from cytodisk.store.study import Study
 
 pytestmark = pytest.mark.slow
-pytest.importorskip("cytodisk.napari.viewer_parts")
+pytest.importorskip("napari.viewer")
 
 from cytodisk.napari.disk_view.disk_dock import NO_STUDY, DiskDock  # noqa: E402
 from cytodisk.napari.napari_versions import camera_of  # noqa: E402

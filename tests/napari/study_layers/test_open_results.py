@@ -11,7 +11,7 @@ import cytodisk as cd
 from cytodisk.store.study import Study
 
 pytestmark = pytest.mark.slow
-pytest.importorskip("cytodisk.napari.viewer_parts")
+pytest.importorskip("napari.viewer")
 
 from cytodisk.napari.study_layers import open_results  # noqa: E402
 

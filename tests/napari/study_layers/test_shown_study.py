@@ -13,7 +13,7 @@ from cytodisk.errors import ReadError
 from cytodisk.store.study import Study
 
 pytestmark = pytest.mark.slow
-pytest.importorskip("cytodisk.napari.viewer_parts")
+pytest.importorskip("napari.viewer")
 
 from cytodisk.napari.study_layers import shown_study  # noqa: E402
 from cytodisk.napari.study_layers.shown_study import show_study, shown_studies  # noqa: E402
