@@ -51,6 +51,7 @@ def test_page_of_one_channel_without_name_or_scale(
     assert not any("µm" in words for words in _words(saved[0]))
 
 
+@pytest.mark.slow
 def test_page_says_which_channels_it_leaves_out(
     tmp_path: Path, windows: CellWindows, image: FloatArray, saved: list[Figure]
 ) -> None:
@@ -61,6 +62,7 @@ def test_page_says_which_channels_it_leaves_out(
     assert "channel 3 (a.u.)" not in _labels(saved[0])
 
 
+@pytest.mark.slow
 def test_page_without_signal(tmp_path: Path, windows: CellWindows, saved: list[Figure]) -> None:
     write_cell_figures(tmp_path, "x" * 200, windows, None, None)
     labels = {"layer, 0 at the cell's edge", "disk area / cell area, log2", "cell's area (%)"}

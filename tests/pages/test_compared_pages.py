@@ -117,6 +117,7 @@ def test_displacement_is_the_mean_over_layers_through_time() -> None:
     assert table.loc[("edge", 0), "centroid_displacement_q25"] == 2.0
 
 
+@pytest.mark.slow
 def test_pages_stand_in_the_folder(comparison: cd.Comparison, tmp_path: Path) -> None:
     assert cd.pages.write_comparison(comparison) == comparison.path / "figures" / "comparison.png"
     assert cd.pages.write_compared_cells(comparison) == comparison.path / "figures" / "cells.png"

@@ -80,6 +80,7 @@ def test_pages_of_a_signal_with_velocity(
     assert curves.axes[-1].get_xlabel().startswith("lag (s)\n← velocity first")
 
 
+@pytest.mark.slow
 def test_pages_of_two_signals(study: cd.Study, saved: list[Figure]) -> None:
     found = correlate_study(study, SHORT, LONG, **FEW, pairs=True)
     paths = write_correlation_figures(study, found)
@@ -90,6 +91,7 @@ def test_pages_of_two_signals(study: cd.Study, saved: list[Figure]) -> None:
     assert any("at the edge" in text.get_text() for text in saved[4].texts)
 
 
+@pytest.mark.slow
 def test_notes_of_pairs_say_which_way_is_up(study: cd.Study, saved: list[Figure]) -> None:
     write_correlation_figures(study, correlate_study(study, SHORT, LONG, **FEW, pairs=True))
     words = [text.get_text() for text in saved[-1].texts]
@@ -97,6 +99,7 @@ def test_notes_of_pairs_say_which_way_is_up(study: cd.Study, saved: list[Figure]
     assert sum("left out" in line for line in words) == 1
 
 
+@pytest.mark.slow
 def test_what_was_not_used_is_grey(study: cd.Study, saved: list[Figure]) -> None:
     some: Any = {"sectors": (6, 1), "frames": (2, 20), "without_frames": (9, 10), "name": "some"}
     write_correlation_figures(study, correlate_study(study, LONG, **FEW | some | {"min_pairs": 5}))
@@ -122,6 +125,7 @@ def shown_places(figure: Figure, axes: int) -> tuple[list[int], list[int]]:
     return np.flatnonzero(known.any(axis=1)).tolist(), np.flatnonzero(known.any(axis=0)).tolist()
 
 
+@pytest.mark.slow
 def test_without_surrogates_nothing_is_called_significant(study: cd.Study, saved: list[Figure]) -> None:
     found = correlate_study(study, LONG, "velocity_cell_frame", max_lag=4, surrogates=0)
     write_correlation_figures(study, found)
@@ -145,6 +149,7 @@ def test_a_cell_without_numbers_has_its_maps_alone(study: cd.Study, with_velocit
     assert names(paths) == ["cell_00000_maps.png"]
 
 
+@pytest.mark.slow
 def test_text_stays_text_and_the_same_picture_is_the_same_file(
     study: cd.Study, with_velocity: Correlation
 ) -> None:

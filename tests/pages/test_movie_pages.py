@@ -130,6 +130,7 @@ def test_a_gap_is_missing_in_the_map(bare: Study, drawn: list[Figure]) -> None:
     assert stamps == ["frame 0", "frame 1", "frame 2", "frame 5", "frame 6", "frame 7"]
 
 
+@pytest.mark.slow
 def test_a_late_cell_has_the_recordings_times(scaled: Study, images: FloatArray, drawn: list[Figure]) -> None:
     paths = write_movie_figures(scaled, LATE, lambda time: images[time])
     assert _count(paths[-1]) == 2
@@ -154,6 +155,7 @@ def test_a_cell_without_map(scaled: Study) -> None:
     assert write_movie_figures(replace(scaled, cells=refused), LATE) == []
 
 
+@pytest.mark.slow
 def test_images_may_be_missing(scaled: Study, images: FloatArray, drawn: list[Figure]) -> None:
     def signal(time: int) -> FloatArray | None:
         return None if time < 2 else images[time, :1]

@@ -75,6 +75,7 @@ def two() -> DrawnPopulation:
     return drawn(population())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("conditions", [1, 2, 3, 6])
 def test_an_atlas_shows_each_condition_and_each_difference(page: Any, conditions: int) -> None:
     one = drawn(population(conditions, experiments=2, cells=2))
@@ -177,6 +178,7 @@ def test_paired_experiments_are_joined(page: Any) -> None:
     assert {"experiment 1", "experiment 4"} <= set(words_of(figure))
 
 
+@pytest.mark.slow
 def test_effect_sizes_have_a_row_a_scalar(page: Any, two: DrawnPopulation) -> None:
     figure = page(effects_page, two)
     (ax,) = figure.axes

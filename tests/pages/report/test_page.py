@@ -84,6 +84,7 @@ def test_signal_of_another_size(study: Study, signal: Path, tmp_path: Path) -> N
     assert "signal.ome.tif is not the movie that was measured" in page_flags(other)[0].what
 
 
+@pytest.mark.slow
 def test_flags_of_the_page_in_one_list(study: Study, tmp_path: Path) -> None:
     gone = dict(study.provenance["inputs"]["signal"], path=str(tmp_path / "gone.tif"))
     moved = Study(study.path, study.cells, study.provenance | {"inputs": {"signal": gone}})
@@ -163,6 +164,7 @@ def test_signal_that_is_not_what_was_measured(
     assert "no pixels to show" in text
 
 
+@pytest.mark.slow
 def test_other_cells_and_their_page(truth: SimulatedMovie, tmp_path: Path) -> None:
     """A second cell, mirrored, leaves after three frames."""
     first = truth.masks.astype(np.uint8)
