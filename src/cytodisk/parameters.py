@@ -213,3 +213,17 @@ def _fault_words(error: ValidationError, model: type[Parameters], names: Mapping
             must += f": {advice}" if advice else ""
             words.append(f"{names.get(name, name)} {must}")
     return "; ".join(dict.fromkeys(words))
+
+
+def from_zero(numbers: tuple[int, ...] | None) -> tuple[int, ...] | None:
+    """Numbers of cells, frames or sectors as they are; a ValueError, for a validator, if one is below 0."""
+    if numbers is not None and any(number < 0 for number in numbers):
+        raise ValueError("must be numbers from 0")
+    return numbers
+
+
+def in_order(frames: tuple[int, int] | None) -> tuple[int, int] | None:
+    """First and last frame as they are; a ValueError, for a validator, if the last is before the first."""
+    if frames is not None and frames[1] < frames[0]:
+        raise ValueError("must go from the first to the last")
+    return frames

@@ -180,12 +180,9 @@ def test_geojson_values_of_another_shape_are_refused(windows: cd.CellWindows) ->
         windows.geojson({"mean": np.zeros(3)})
 
 
-def test_one_outline_is_that_among_all(windows: cd.CellWindows) -> None:
+@pytest.mark.parametrize("nucleus", [None, np.pad(cd.simulate.disk(6), 14)], ids=["plain", "with a nucleus"])
+def test_one_outline_is_that_among_all(nucleus: np.ndarray | None) -> None:
+    disk = cd.map_to_disk(cd.simulate.disk(20), nucleus=nucleus)
+    windows = cd.polar_windows(3, 7, nucleus_layers=None if nucleus is None else 2).on(disk)
     for number, polygon in enumerate(windows.polygons()):
         assert_allclose(windows.polygon(*divmod(number, windows.sectors)), polygon, atol=1e-9)
-
-
-def test_one_outline_is_that_among_all_with_a_nucleus() -> None:
-    disk = cd.map_to_disk(cd.simulate.disk(20), nucleus=np.pad(cd.simulate.disk(6), 14))
-    windows = cd.polar_windows(3, 7, nucleus_layers=2).on(disk)
-    test_one_outline_is_that_among_all(windows)

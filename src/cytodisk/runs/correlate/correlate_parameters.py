@@ -11,7 +11,7 @@ from cytodisk.analysis.correlation.correlation_parameters import (
     PeakParameters,
     SkipLagsParameters,
 )
-from cytodisk.parameters import parameter
+from cytodisk.parameters import from_zero, in_order, parameter
 
 FEWEST_SURROGATES = 19
 
@@ -81,16 +81,12 @@ class CorrelateParameters(PeakParameters, SkipLagsParameters, PairCorrelationPar
     @field_validator("frames")
     @classmethod
     def _in_order(cls, frames: tuple[int, int] | None) -> tuple[int, int] | None:
-        if frames is not None and frames[1] < frames[0]:
-            raise ValueError("must go from the first to the last")
-        return frames
+        return in_order(frames)
 
     @field_validator("frames", "sectors", "without_frames")
     @classmethod
     def _from_zero(cls, numbers: tuple[int, ...] | None) -> tuple[int, ...] | None:
-        if numbers is not None and any(number < 0 for number in numbers):
-            raise ValueError("must be numbers from 0")
-        return numbers
+        return from_zero(numbers)
 
     @field_validator("name")
     @classmethod

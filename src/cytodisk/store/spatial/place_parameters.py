@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import field_validator
 
-from cytodisk.parameters import Parameters, parameter
+from cytodisk.parameters import Parameters, from_zero, in_order, parameter
 
 
 class PlaceParameters(Parameters):
@@ -23,16 +23,12 @@ class PlaceParameters(Parameters):
     @field_validator("cells", "frames")
     @classmethod
     def _from_zero(cls, numbers: tuple[int, ...] | None) -> tuple[int, ...] | None:
-        if numbers is not None and any(number < 0 for number in numbers):
-            raise ValueError("must be numbers from 0")
-        return numbers
+        return from_zero(numbers)
 
     @field_validator("frames")
     @classmethod
     def _in_order(cls, frames: tuple[int, int] | None) -> tuple[int, int] | None:
-        if frames is not None and frames[1] < frames[0]:
-            raise ValueError("must go from the first to the last")
-        return frames
+        return in_order(frames)
 
 
 class SpatialParameters(PlaceParameters):
