@@ -327,7 +327,7 @@ def test_a_crash_while_replacing_loses_nothing(study: cd.Study, monkeypatch: pyt
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patch:
-        patch.setattr("cytodisk.store.correlation_store.write_table", no_room)
+        patch.setattr("cytodisk.store.derived.derived_folder.write_table", no_room)
         with pytest.raises(StudyError, match="No space left on device"):
             correlate_study(study, "edge", max_lag=4, surrogates=0)
     pd.testing.assert_frame_equal(study.correlation("edge").windows, before)

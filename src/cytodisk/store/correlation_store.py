@@ -2,40 +2,25 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
-import shutil
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
-from urllib.parse import quote
+from typing import Any, ClassVar
 
 import pandas as pd
-import pyarrow as pa
-import pyarrow.parquet as pq
 
-from cytodisk.errors import ReadError, StudyError
-from cytodisk.files import flush, make_folder, temporary_name
-from cytodisk.reading_files import checked, json_of, reading_file, text_of
-from cytodisk.store.columns_file import write_columns
-from cytodisk.store.csv_tables import parquet_to_csv
+from cytodisk.errors import ReadError
+from cytodisk.store.derived.derived_folder import DerivedFolder, folder_name, read_settings, write_derived
 from cytodisk.store.json_shapes import correlation_settings
-from cytodisk.store.provenance_file import read_provenance
-from cytodisk.store.table_file import read_checked
-from cytodisk.store.tables import Column, Columns, write_table
-from cytodisk.store.written_files import recorded, writing_files
+from cytodisk.store.tables import Columns
 
 CORRELATION = "correlation"
-SETTINGS = "settings.json"
-TABLES = "tables"  # in the settings: names and types of the columns of each table
-_REMEDY = "remove the folder that it stands in, and run cytodisk correlate again"
-_LONGEST_NAME, _MARK = 70, 12  # characters: three such names make one of a folder, which has up to 255
+_COMMAND = "cytodisk correlate"
 
 
 @dataclass(frozen=True)
-class CorrelationFolder:
+class CorrelationFolder(DerivedFolder):
     """A folder with the tables of a correlation, which are read when asked for.
 
     Attributes
@@ -51,14 +36,7 @@ class CorrelationFolder:
     with_: str
     name: str
     settings: dict[str, Any]
-
-    def _optional(self, name: str) -> pd.DataFrame | None:
-        return self._table(name) if (self.path / f"{name}.parquet").exists() else None
-
-    def _table(self, name: str) -> pd.DataFrame:
-        told = self.settings.get(TABLES, {}).get(name, {})
-        columns = tuple(Column(column, pa.type_for_alias(kind), "", "") for column, kind in told.items())
-        return read_checked(self.path / f"{name}.parquet", columns, remedy=_REMEDY, finite=False)
+    command: ClassVar[str] = _COMMAND
 
 
 @dataclass(frozen=True)
@@ -128,7 +106,7 @@ class Correlation(CorrelationFolder):
 def correlation_path(study: Path, signal: str, with_: str, name: str = "") -> Path:
     """Folder of a correlation; what no file name can hold is written with %, and long names are cut."""
     names = (signal, with_, name) if name else (signal, with_)
-    return study / CORRELATION / "~".join(_quoted(part) for part in names)
+    return study / CORRELATION / folder_name(names)
 
 
 def write_correlation(
@@ -167,68 +145,9 @@ def write_correlation(
         The folder cannot be written, or is a link: what lies behind it may be another's.
     """
     target = correlation_path(study, signal, with_, name)
-    if target.is_symlink():
-        raise StudyError(f"cannot write {target}: it is a link to {target.readlink()}; remove the link")
-    content = {"signal": signal, "with": with_, "name": name} | settings | {TABLES: {}}
-    temporary = target.with_name(temporary_name())
-    place = f"{CORRELATION}/{target.name}"
-    try:
-        make_folder(temporary)
-        for table_name, table in tables.items():
-            file = temporary / f"{table_name}.parquet"
-            write_table(table, file)
-            content[TABLES][table_name] = {one.name: str(one.type) for one in pq.read_schema(file)}
-            if csv:
-                parquet_to_csv(file, file.with_suffix(".csv"))
-        told = {
-            table_name: tuple(column for column in columns[table_name] if column.name in table)
-            for table_name, table in tables.items()
-        }
-        write_columns(temporary, told, read_provenance(study) or {})
-        text = json.dumps(content, indent=2, ensure_ascii=False)
-        (temporary / SETTINGS).write_text(text + "\n", encoding="utf-8")
-        flush(temporary.iterdir())
-        there = [name for name in recorded(read_provenance(study) or {}) if name.startswith(f"{place}/")]
-        new = [f"{place}/{file.name}" for file in temporary.iterdir()]
-        with writing_files(study, *dict.fromkeys([*new, *there])):
-            _exchange(target, temporary, [name.removeprefix(f"{place}/") for name in there])
-    except OSError as error:
-        raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
+    content = {"signal": signal, "with": with_, "name": name} | settings
+    write_derived(study, target, tables, columns, content, csv)
     return read_correlation(study, signal, with_, name)
-
-
-def _exchange(target: Path, new: Path, own: Collection[str]) -> None:
-    """Put a folder in the place of another, which is there until the new one is, or comes back.
-
-    Of the old one what is `own` is removed; other files move to the new one.
-    """
-    old = target.with_name(f".old~{target.name}")
-    if old.exists() and not target.exists():
-        old.replace(target)  # an earlier process died between the two steps below
-    _dissolve(old, target, own)
-    if target.exists():
-        target.replace(old)
-    try:
-        new.replace(target)
-    except BaseException:
-        if old.exists():
-            old.replace(target)
-        raise
-    _dissolve(old, target, own)
-
-
-def _dissolve(old: Path, target: Path, own: Collection[str]) -> None:
-    """Remove a folder that was replaced, but for files that are not its study's: these move."""
-    if not old.exists():
-        return
-    for file in [file for file in old.rglob("*") if not file.is_dir() or file.is_symlink()]:
-        name = file.relative_to(old).as_posix()
-        if name not in own:
-            make_folder((target / name).parent)
-            file.replace(target / name)
-    shutil.rmtree(old)
 
 
 def read_correlation(study: Path, signal: str, with_: str, name: str = "") -> Correlation:
@@ -261,18 +180,4 @@ def titled(signal: str, with_: str, name: str = "") -> str:
 
 
 def _settings(path: Path) -> dict[str, Any] | None:
-    file = path / SETTINGS
-    if not file.exists():
-        return None
-    with reading_file(file, "the settings of a correlation", _REMEDY):
-        found: dict[str, Any] = json_of(text_of(file))
-        checked(found, correlation_settings, str(file), _REMEDY)
-    return found
-
-
-def _quoted(name: str) -> str:
-    quoted = quote(name, safe=" +-,()", errors="surrogatepass").replace("~", "%7E")
-    if len(quoted) > _LONGEST_NAME:  # what tells it from others that begin alike is its hash
-        mark = hashlib.sha256(name.encode("utf-8", "surrogatepass")).hexdigest()[:_MARK]
-        quoted = f"{quoted[: _LONGEST_NAME - _MARK - 1]}+{mark}"
-    return f"%2E{quoted[1:]}" if quoted.startswith(".") else quoted  # a dot in front hides a folder
+    return read_settings(path, correlation_settings, "a correlation", _COMMAND)

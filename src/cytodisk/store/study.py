@@ -19,9 +19,9 @@ from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
 from cytodisk.motion.frame_file import load_boundary
 from cytodisk.scale import Scale
 from cytodisk.store.activity_store import open_activity
-from cytodisk.store.correlation_store import Correlation, list_correlations, read_correlation
 from cytodisk.store.nuclei.profile_table import profile_table
 from cytodisk.store.provenance_file import PROVENANCE, other_maps, read_complete
+from cytodisk.store.results.study_results import StudyResults
 from cytodisk.store.spatial.spatial_study import SpatialStudy
 from cytodisk.store.study_folder import part_key
 from cytodisk.store.study_kind import ACTIVITY, CELLS, MAPS
@@ -34,7 +34,7 @@ WINDOWS, EDGE, CONSISTENCY = "windows.parquet", "edge.parquet", "consistency.par
 
 
 @dataclass(frozen=True)
-class Study(SpatialStudy):
+class Study(SpatialStudy, StudyResults):
     """The reading side of a study.
 
     Attributes
@@ -97,30 +97,6 @@ class Study(SpatialStudy):
     def consistency(self) -> pd.DataFrame:
         """For a movie, one row a cell, frame, channel and layer: the paper's measures."""
         return self._movie_table(CONSISTENCY, CONSISTENCY_COLUMNS, "layer")
-
-    @property
-    def correlations(self) -> list[tuple[str, ...]]:
-        """What was correlated: (signal, with), or (signal, with, name) for a variant."""
-        return list_correlations(self.path)
-
-    def correlation(self, signal: str, with_: str = "velocity", name: str = "") -> Correlation:
-        """Read a correlation.
-
-        Parameters
-        ----------
-        signal, with_, name : str
-            As they were given to `cytodisk correlate`.
-
-        Returns
-        -------
-        Correlation
-
-        Raises
-        ------
-        ReadError
-            It is not there; the message lists those that are.
-        """
-        return read_correlation(self.path, signal, with_, name)
 
     @property
     def is_movie(self) -> bool:

@@ -1,0 +1,1 @@
+"""Folders of what was computed from a study afterwards: correlations, predictions, waves."""

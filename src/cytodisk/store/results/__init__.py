@@ -1,0 +1,1 @@
+"""What a study knows of the results that were computed from it."""
