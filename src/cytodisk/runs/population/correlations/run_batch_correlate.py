@@ -9,27 +9,33 @@ from typing import Any
 import pandas as pd
 
 from cytodisk.errors import ParameterError, PopulationError
-from cytodisk.population.group_columns import CONDITION, EXPERIMENT
+from cytodisk.population.group_columns import CONDITION
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
-from cytodisk.runs.correlate.correlate_study import channels_of
-from cytodisk.runs.population.correlations.batch_movies import BatchMovies, common_lag, movies_of
+from cytodisk.runs.correlate.correlate_study import channels_of, correlate_study
+from cytodisk.runs.population.correlations.common_lag import common_lag
 from cytodisk.runs.population.correlations.pool_parameters import (
     BatchCorrelateParameters,
     PoolOptions,
     PoolParameters,
 )
 from cytodisk.runs.population.correlations.pooled_columns import POOLED_TABLES
-from cytodisk.runs.population.correlations.pooled_curves import Pooled, conditions_compared, pool_curves
-from cytodisk.runs.population.correlations.study_curves import REFUSED, cells_of, correlated, curves_of
+from cytodisk.runs.population.correlations.pooled_curves import pool_curves
+from cytodisk.runs.population.correlations.study_curves import cells_of, curves_of, kept
+from cytodisk.runs.population.pooling.batch_movies import movies_of
+from cytodisk.runs.population.pooling.movie_by_movie import (
+    REFUSED,
+    each_movie,
+    in_order,
+    pooled_settings,
+    table_of_studies,
+    with_groups_of,
+)
+from cytodisk.runs.population.pooling.pooled_population import conditions_compared
 from cytodisk.runs.run_options import Progress
-from cytodisk.runs.versions import installed
 from cytodisk.store.correlation_store import write_correlation
 from cytodisk.store.populations.pooled_correlation import PooledCorrelation, open_pooled_correlation
 from cytodisk.store.study import open_study
-from cytodisk.store.tables import Columns
 from cytodisk.taking import takes
-
-_GROUP = ["input", "cell"]
 
 
 @takes(BatchCorrelateParameters, PoolOptions)
@@ -121,21 +127,30 @@ def run_batch_correlate(
     of_each = chosen.part(CorrelateParameters)
     if of_each.max_lag is None:
         of_each = of_each.changed(max_lag=common_lag(movies, of_each.min_pairs))
-    studies, cells, curves = _each(movies, (signal, with_), of_each, options, progress)
-    if not curves:
-        reasons = [row["reason"] for row in studies if row["status"] == REFUSED]
+    names = signal, with_
+    rows, done = each_movie(
+        movies,
+        lambda study, report: correlate_study(
+            study, *names, progress=report, parameters=of_each, csv=options.csv
+        ),
+        (lambda study: kept(study, names, of_each)) if options.resume else None,
+        progress,
+    )
+    if not done:
+        reasons = [row["reason"] for row in rows if row["status"] == REFUSED]
         raise ParameterError(f"no movie of batch {folder} can be correlated: {reasons[0]}")
-    table = _with_groups(pd.concat(cells, ignore_index=True), movies.groups)
-    joined = _with_groups(pd.concat(curves, ignore_index=True), movies.groups)
-    pooled = pool_curves(joined, table[table["status"] == "ok"], (signal, with_), chosen.part(PoolParameters))
+    cells = pd.concat([cells_of(study, found) for study, found in done], ignore_index=True)
+    curves = pd.concat([curves_of(study, found) for study, found in done], ignore_index=True)
+    table, joined = with_groups_of(cells, movies.groups), with_groups_of(curves, movies.groups)
+    pooled = pool_curves(joined, table[table["status"] == "ok"], names, chosen.part(PoolParameters))
     if pooled.tables["pooled"].empty:
         why = [words for words in table["reason"] if words] or ["no lag has enough pairs of frames"]
         raise PopulationError(f"no cell of batch {folder} can be pooled: {why[0]}")
-    tables = {"studies": _studies(studies, table), "cells": table, "curves": joined} | pooled.tables
+    tables = {"studies": table_of_studies(rows, table), "cells": table, "curves": joined} | pooled.tables
     tables = {name: one for name, one in tables.items() if len(one)}
-    content = chosen.model_dump() | _said(movies, pooled) | {"max_lag": of_each.max_lag}
+    content = chosen.model_dump() | pooled_settings(movies, pooled) | {"max_lag": of_each.max_lag}
     content["given"] = chosen.model_dump(mode="json", exclude_defaults=True)
-    ordered = {name: _ordered(one, POOLED_TABLES[name]) for name, one in tables.items()}
+    ordered = {name: in_order(one, POOLED_TABLES[name]) for name, one in tables.items()}
     write_correlation(folder, signal, with_, ordered, POOLED_TABLES, content, chosen.name, options.csv)
     return open_pooled_correlation(folder, signal, with_, chosen.name)
 
@@ -153,67 +168,3 @@ def only_channel(batch: str | os.PathLike[str]) -> str:
     if len(names) > 1:
         raise ParameterError(f"signal is not given: pass --signal with one of {', '.join(map(repr, names))}")
     return names[0]
-
-
-def _each(
-    movies: BatchMovies,
-    names: tuple[str, str],
-    parameters: CorrelateParameters,
-    options: PoolOptions,
-    progress: Progress | None,
-) -> tuple[list[dict[str, Any]], list[pd.DataFrame], list[pd.DataFrame]]:
-    """Correlate the movies one by one: rows of studies, and tables of cells and curves."""
-    rows, cells, curves = list(movies.left_out), [], []
-    for place, study in enumerate(movies.studies):
-        report = _share(progress, place, len(movies.studies))
-        found, row = correlated(
-            study, names, parameters, resume=options.resume, csv=options.csv, progress=report
-        )
-        rows.append(row)
-        if found is not None:
-            cells.append(cells_of(study, found))
-            curves.append(curves_of(study, found))
-        if report is not None:
-            report(1, 1)
-    return rows, cells, curves
-
-
-def _share(progress: Progress | None, place: int, whole: int) -> Progress | None:
-    """What to call with the steps of one study, to report percents of all."""
-    if progress is None:
-        return None
-    return lambda done, steps: progress(100 * place + round(100 * done / max(steps, 1)), 100 * whole)
-
-
-def _with_groups(table: pd.DataFrame, groups: pd.DataFrame) -> pd.DataFrame:
-    """The table with condition and experiment of each cell; a cell without a condition is left out."""
-    found = table.merge(groups, on=_GROUP, how="left")
-    if "status" in found:
-        for name in (CONDITION, EXPERIMENT):
-            unknown = found[name].fillna("") == ""
-            if not unknown.all():
-                left = unknown & (found["status"] == "ok")
-                found.loc[left, ["status", "reason"]] = ["left out", f"it has no {name}"]
-    return found.fillna({CONDITION: "", EXPERIMENT: ""})
-
-
-def _studies(rows: list[dict[str, Any]], cells: pd.DataFrame) -> pd.DataFrame:
-    """A row for each input, with the number of its cells that are pooled."""
-    counts = cells[cells["status"] == "ok"].groupby("input").size()
-    table = pd.DataFrame(rows)
-    return table.assign(cells=table["input"].map(counts).fillna(0).astype(int))
-
-
-def _said(movies: BatchMovies, pooled: Pooled) -> dict[str, Any]:
-    return {
-        "sentences": [*pooled.sentences, *movies.remarks],
-        "warnings": pooled.warnings,
-        "cytodisk": installed(("cytodisk",))["cytodisk"],
-    }
-
-
-def _ordered(table: pd.DataFrame, columns: Columns) -> pd.DataFrame:
-    """The table with its columns in order, and their units."""
-    found = table.reindex(columns=[column.name for column in columns])
-    found.attrs = {"units": {column.name: column.unit for column in columns}}
-    return found

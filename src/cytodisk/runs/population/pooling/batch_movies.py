@@ -1,26 +1,23 @@
-"""The movies of a batch whose correlations can be pooled, and the group of each of their cells."""
+"""The movies of a batch whose cells can be pooled, and the group of each of these cells."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
-from cytodisk.errors import CytodiskError, PopulationError
+from cytodisk.errors import PopulationError
 from cytodisk.images.short_lists import shortened
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT, names_in
-from cytodisk.runs.correlate.correlate_study import usual_lag
 from cytodisk.runs.population.opening.alike_settings import check_alike
 from cytodisk.runs.population.opening.found_studies import FoundStudy, find_studies
 from cytodisk.runs.population.opening.joined_cells import joined_rows
 from cytodisk.runs.population.opening.movie_cells import rows_by_cell
 from cytodisk.runs.population.opening.with_groups import with_groups
-from cytodisk.store.study import open_study
 
 ALL = "all cells"
 """Condition of cells in a batch that names none."""
@@ -67,11 +64,11 @@ def movies_of(folder: Path, groups: str | os.PathLike[str] | None = None) -> Bat
     """
     found, without = find_studies(folder)
     movies = [study for study in found if study.run == "movie"]
-    others = [_row(study.name, "no movie: it has no time to correlate over") for study in found]
+    others = [_row(study.name, "no movie: it has no time") for study in found]
     others = [row for row, study in zip(others, found, strict=True) if study.run != "movie"]
     lost = [_row(str(row["input"]), str(row["reason"])) for row in without.rows]
     if not movies:
-        raise PopulationError(f"batch {folder} has no movie: correlations need kind = 'movie' in its file")
+        raise PopulationError(f"batch {folder} has no movie: this needs kind = 'movie' in its file")
     remarks = check_alike(movies)
     check_intervals(movies)
     cells, told = with_groups(rows_by_cell(joined_rows(movies)), groups, movies)
@@ -93,29 +90,6 @@ def _groups(cells: pd.DataFrame) -> pd.DataFrame:
     ).reset_index(drop=True)
 
 
-def common_lag(movies: BatchMovies, min_pairs: int) -> int:
-    """The usual longest lag of the movie in the middle: of all movies half are as long, or longer.
-
-    Raises
-    ------
-    PopulationError
-        No study can be read.
-    """
-    lags = [*_usual_lags(movies.studies, min_pairs)]
-    if not lags:
-        raise PopulationError(f"no study of batch {movies.folder} can be read: run cytodisk batch again")
-    return int(np.median(lags))
-
-
-def _usual_lags(studies: Sequence[FoundStudy], min_pairs: int) -> Iterator[int]:
-    for study in studies:
-        try:
-            opened = open_study(study.folder)
-        except CytodiskError:  # its row says why once it is correlated
-            continue
-        yield usual_lag(opened, [int(cell) for cell in opened.cells["cell"].unique()], min_pairs)
-
-
 def check_intervals(studies: Sequence[FoundStudy]) -> None:
     """Refuse movies whose lags are not the same times.
 
@@ -133,8 +107,8 @@ def check_intervals(studies: Sequence[FoundStudy]) -> None:
             for seconds, names in found.items()
         )
         raise PopulationError(
-            f"movies differ in the frame interval: {words}: their lags are not the same times; make a batch "
-            "of those with one interval, or give the right one with frame_interval_s"
+            f"movies differ in the frame interval: {words}: their frames are not as far apart; make a "
+            "batch of those with one interval, or give the right one with frame_interval_s"
         )
 
 

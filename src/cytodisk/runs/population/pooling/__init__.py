@@ -1,0 +1,1 @@
+"""Numbers of many cells pooled over experiments: means, intervals and tests."""
