@@ -72,7 +72,7 @@ def test_every_movie_counts_or_has_a_row_that_says_why(pooled: PooledCorrelation
         "short": "refused",
         "image": "left out",
     }
-    assert studies.loc["image", "reason"] == "no movie: it has no time to correlate over"
+    assert studies.loc["image", "reason"] == "no movie: nothing in it changes with time"
     assert "frames" in studies.loc["short", "reason"]
     assert studies["cells"].sum() == 2
 

@@ -64,7 +64,7 @@ def movies_of(folder: Path, groups: str | os.PathLike[str] | None = None) -> Bat
     """
     found, without = find_studies(folder)
     movies = [study for study in found if study.run == "movie"]
-    others = [_row(study.name, "no movie: it has no time") for study in found]
+    others = [_row(study.name, "no movie: nothing in it changes with time") for study in found]
     others = [row for row, study in zip(others, found, strict=True) if study.run != "movie"]
     lost = [_row(str(row["input"]), str(row["reason"])) for row in without.rows]
     if not movies:
