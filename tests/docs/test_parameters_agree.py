@@ -57,6 +57,8 @@ FUNCTIONS = (
     cd.simulate.movie,
     cd.simulate.independent_series,
     cd.simulate.coupled_series,
+    cd.simulate.predicting_series,
+    cd.simulate.wave_series,
 )
 UNITS = {"_um": "µm", "_s": "s", "_px": "px", "_px2": "px²"}
 

@@ -23,6 +23,8 @@ from cytodisk.simulate.null_series import SERIES_KINDS, coupled_series, independ
 from cytodisk.simulate.passive_signals import PASSIVE_KINDS, passive_signal
 from cytodisk.simulate.populations.population_images import PopulationImages, population_images
 from cytodisk.simulate.populations.simulated_populations import SimulatedPopulation, population
+from cytodisk.simulate.predicting.predicting_parameters import COUPLINGS
+from cytodisk.simulate.predicting.predicting_series import PREDICTING_KINDS, predicting_series
 from cytodisk.simulate.random_cells import branching, migrating, random_smooth, random_spiky
 from cytodisk.simulate.random_masks import KINDS, random_mask
 from cytodisk.simulate.signals import (
@@ -33,9 +35,11 @@ from cytodisk.simulate.signals import (
     ring_signal,
 )
 from cytodisk.simulate.stress_series import STRESS_KINDS
+from cytodisk.simulate.waves.wave_series import WAVE_KINDS, wave_series
 
 __all__ = [
     "CELL_SHAPES",
+    "COUPLINGS",
     "EDGE_KINDS",
     "KINDS",
     "MOVIE_KINDS",
@@ -44,8 +48,10 @@ __all__ = [
     "PAIR_CELLS",
     "PAIR_NUCLEI",
     "PASSIVE_KINDS",
+    "PREDICTING_KINDS",
     "SERIES_KINDS",
     "STRESS_KINDS",
+    "WAVE_KINDS",
     "CellWithNucleus",
     "CellsWithNuclei",
     "MovieWithNuclei",
@@ -73,6 +79,7 @@ __all__ = [
     "passive_signal",
     "population",
     "population_images",
+    "predicting_series",
     "profile_signal",
     "random_mask",
     "random_pair",
@@ -82,4 +89,5 @@ __all__ = [
     "ring_signal",
     "scaled_up_masks",
     "star",
+    "wave_series",
 ]

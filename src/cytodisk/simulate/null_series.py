@@ -16,9 +16,10 @@ from cytodisk.taking import takes
 SeriesKind = Literal["white", "ar1", "slow", "smooth", "oscillating"]
 SERIES_KINDS: tuple[SeriesKind, ...] = get_args(SeriesKind)
 
-_MEMORY = 400  # frames; less than 1e-8 of "slow" is left after them
+MEMORY = 400  # frames; less than 1e-8 of "slow" is left after them
 _SMOOTH_DEVIATION = 2.0  # frames
-_OSCILLATION_DAMPING, _OSCILLATION_PERIOD = 0.9, 10.0
+OSCILLATION_PERIOD = 10.0  # frames
+_OSCILLATION_DAMPING = 0.9
 _REACH = 4.0  # correlation lengths beyond which noise counts for nothing
 
 
@@ -80,7 +81,7 @@ def independent_series(
     """
     length = NeighbourParameters.of(**settings).correlation_length
     kind = one_of("kind", kind, SERIES_KINDS + STRESS_KINDS)
-    _check_sizes(seed, frames, layers, sectors)
+    check_sizes(seed, frames, layers, sectors)
     of_time = kind if kind in SERIES_KINDS else "white"
     velocity = _velocity(of_time, seed, frames, sectors, length)
     activity = _activity(of_time, seed, frames, (layers, sectors), length)
@@ -142,7 +143,7 @@ def coupled_series(
     """
     how = CouplingParameters.of(**settings)
     one_of("kind", kind, SERIES_KINDS)
-    _check_sizes(seed, frames, layers, sectors)
+    check_sizes(seed, frames, layers, sectors)
     lag_frames = whole_number("lag_frames", lag_frames, -frames)
     coupled = np.asarray(windows)
     if coupled.dtype != bool or coupled.shape != (layers, sectors):
@@ -159,35 +160,53 @@ def coupled_series(
     return _labelled(np.where(coupled, mixed, noise), velocity)
 
 
-def _check_sizes(seed: int, frames: int, layers: int, sectors: int) -> None:
+def check_sizes(seed: int, frames: int, layers: int, sectors: int) -> None:
+    """Check what all simulated series are asked for.
+
+    Raises
+    ------
+    ParameterError
+        The seed is negative, or there is no frame, layer or sector.
+    """
     whole_number("seed", seed, 0)
     for name, value in (("frames", frames), ("layers", layers), ("sectors", sectors)):
         whole_number(name, value, 1)
 
 
 def _velocity(kind: SeriesKind, seed: int, frames: int, sectors: int, length: float) -> FloatArray:
-    along = ring_weights(sectors, length)
-    noise = np.random.default_rng([seed, 0]).normal(size=(frames + _MEMORY - 1, sectors))
-    return _through_time(kind, noise @ along.T)
+    noise = edge_noise(np.random.default_rng([seed, 0]), frames + MEMORY - 1, sectors, length)
+    return through_time(kind, noise)
 
 
 def _activity(kind: SeriesKind, seed: int, frames: int, shape: tuple[int, int], length: float) -> FloatArray:
+    noise = window_noise(np.random.default_rng([seed, 1]), frames + MEMORY - 1, shape, length)
+    return through_time(kind, noise)
+
+
+def edge_noise(random: np.random.Generator, frames: int, sectors: int, length: float) -> FloatArray:
+    """Noise of variance 1, white in time, correlated over a length around the edge; shape (T, S)."""
+    return np.asarray(random.normal(size=(frames, sectors)) @ ring_weights(sectors, length).T)
+
+
+def window_noise(
+    random: np.random.Generator, frames: int, shape: tuple[int, int], length: float
+) -> FloatArray:
+    """Noise of variance 1, white in time, correlated over a length around and inwards; shape (T, L, S)."""
     inwards, along = depth_weights(shape[0], length), ring_weights(shape[1], length)
-    size = (frames + _MEMORY - 1, inwards.shape[1], shape[1])
-    noise = np.random.default_rng([seed, 1]).normal(size=size)
-    return _through_time(kind, inwards @ noise @ along.T)
+    noise = random.normal(size=(frames, inwards.shape[1], shape[1]))
+    return np.asarray(inwards @ noise @ along.T)
 
 
-def _through_time(kind: SeriesKind, noise: FloatArray) -> FloatArray:
-    """Series of variance 1 from white noise of variance 1 that starts `_MEMORY` - 1 frames earlier."""
-    response = _impulse_response(kind).reshape(-1, *[1] * (noise.ndim - 1))
+def through_time(kind: SeriesKind, noise: FloatArray) -> FloatArray:
+    """Series of a kind from white noise that starts `MEMORY` - 1 frames earlier, of the noise's variance."""
+    response = impulse_response(kind).reshape(-1, *[1] * (noise.ndim - 1))
     return np.asarray(oaconvolve(noise, response, mode="valid", axes=0))
 
 
-def _impulse_response(kind: SeriesKind) -> FloatArray:
+def impulse_response(kind: SeriesKind) -> FloatArray:
     """Weights of the noise of this frame and the earlier ones, the sum of their squares 1."""
-    impulse = np.eye(1, _MEMORY)[0]
-    turn = 2.0 * np.pi / _OSCILLATION_PERIOD
+    impulse = np.eye(1, MEMORY)[0]
+    turn = 2.0 * np.pi / OSCILLATION_PERIOD
     feedback = {
         "white": [1.0],
         "ar1": [1.0, -0.8],
@@ -195,7 +214,7 @@ def _impulse_response(kind: SeriesKind) -> FloatArray:
         "oscillating": [1.0, -2.0 * _OSCILLATION_DAMPING * np.cos(turn), _OSCILLATION_DAMPING**2],
     }
     if kind == "smooth":
-        time = np.arange(_MEMORY) - 0.5 * _MEMORY
+        time = np.arange(MEMORY) - 0.5 * MEMORY
         response = np.exp(-0.5 * (time / _SMOOTH_DEVIATION) ** 2)
     else:
         response = np.asarray(lfilter([1.0], feedback[kind], impulse))

@@ -1,0 +1,1 @@
+"""Series whose past predicts one another, with known gain."""

@@ -1,0 +1,1 @@
+"""Waves along an edge and inside a cell, with known speed."""
