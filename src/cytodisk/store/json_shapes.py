@@ -57,6 +57,24 @@ class _Settings(_With, total=False):
 
 
 @with_config(_ANYTHING_ELSE)
+class _PredictionSettings(TypedDict, total=False):
+    source: Required[_Text]
+    target: Required[_Text]
+    signals: Required[list[_Text]]
+    name: _Text
+    tables: dict[str, dict[str, _Kind]]
+    given: list[_Text] | None
+    max_order: _Count
+    surrogates: _Count
+    seed: _Seed
+    geometry: _Truth
+    without_frames: list[_Whole]
+    frames: Annotated[list[_Count], _Two] | None
+    sectors: Annotated[list[_Count], _Two] | None
+    asked: dict[str, Any]
+
+
+@with_config(_ANYTHING_ELSE)
 class _Input(TypedDict, total=False):
     path: Required[_Text]
     sha256: _Text
@@ -115,6 +133,12 @@ class _Row(TypedDict, total=False):
 def correlation_settings() -> TypeAdapter[Any]:
     """Of `settings.json` of a correlation."""
     return TypeAdapter(_Settings)
+
+
+@cache
+def prediction_settings() -> TypeAdapter[Any]:
+    """Of `settings.json` of a prediction."""
+    return TypeAdapter(_PredictionSettings)
 
 
 @cache

@@ -14,11 +14,10 @@ import pandas as pd
 import xarray as xr
 
 from cytodisk.analysis.correlation.correlation_parameters import PairCorrelationParameters
-from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer, cross_correlate
+from cytodisk.analysis.correlation.cross_correlation import cross_correlate
 from cytodisk.analysis.correlation.jitter_mark import (
     JITTERED_DIFFERENCES,
     JITTERED_LAGS,
-    jitter_step,
     velocity_jitter,
 )
 from cytodisk.analysis.pairs.pair_correlation import correlate_pairs
@@ -26,8 +25,6 @@ from cytodisk.analysis.pairs.window_distances import window_distances
 from cytodisk.arrays import IntArray
 from cytodisk.errors import ParameterError, StationarityWarning
 from cytodisk.runs.channel_names import VELOCITIES
-from cytodisk.runs.correlate.cell_controls import CellControls
-from cytodisk.runs.correlate.chosen_series import chosen_sectors, chosen_series
 from cytodisk.runs.correlate.cluster_rows import with_clusters
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.correlate.correlation_tables import as_table, tables_of
@@ -35,10 +32,13 @@ from cytodisk.runs.correlate.event_tables import event_tables
 from cytodisk.runs.correlate.partial_correlation import Partial, partial_correlation
 from cytodisk.runs.correlate.stress_columns import stress_row
 from cytodisk.runs.run_options import Progress
+from cytodisk.runs.used_series.cell_controls import CellControls
+from cytodisk.runs.used_series.chosen_series import chosen_sectors, chosen_series
+from cytodisk.runs.used_series.jitter_of_series import largest_jitter
+from cytodisk.runs.used_series.progress_phases import phases
 from cytodisk.store.study import Study
 from cytodisk.windows.study_grid import polar_grid_of
 
-_LEAST_LAG_FOR_JITTER, _LAG_FOR_JITTER = 6, 10
 _SIDES = (("signal", "a"), ("with", "b"))
 _PAIRED_SURROGATES = 99  # of the mean over pairs at most, which take longer than those of windows
 
@@ -78,7 +78,7 @@ class CellCorrelation:
             empty = self.signal if not np.isfinite(a).any() else self.with_
             raise ParameterError(f"cell {cell} has no values of {empty}")
         asked = self._controls.asked
-        phases = _phases(progress, 1 + 2 * asked + options.pairs)
+        steps = phases(progress, 1 + 2 * asked + options.pairs)
         common = dict(options.part(PairCorrelationParameters))
         with _shares_in_the_table():
             correlations = cross_correlate(
@@ -86,15 +86,15 @@ class CellCorrelation:
                 b,
                 self.max_lag,
                 skip_lags=options.skip_lags,
-                progress=phases[0],
+                progress=steps[0],
                 **common,
                 **self._clusters(cell),
             )
             jitter = self._jitter_row(a, b)
-            partial, not_tested = self._partial(cell, activity, (a, b), phases) if asked else (None, "")
+            partial, not_tested = self._partial(cell, activity, (a, b), steps) if asked else (None, "")
         tables = with_clusters(tables_of(correlations, options, partial), correlations, partial)
         if options.pairs:
-            tables["pairs"] = self._pairs(cell, activity, a, phases[-1])
+            tables["pairs"] = self._pairs(cell, activity, a, steps[-1])
         row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"]}
         row["statistic"] = options.statistic
         row["surrogates"] = correlations.attrs["surrogates"]
@@ -129,18 +129,18 @@ class CellCorrelation:
 
     @cached_property
     def _controls(self) -> CellControls:
-        return CellControls(self.study, self.max_lag, self.options)
+        return CellControls(self.study, self.max_lag, self.options, self.options.control)
 
     def _partial(
         self,
         cell: int,
         activity: xr.Dataset,
         series: tuple[xr.DataArray, xr.DataArray],
-        phases: list[Progress | None],
+        steps: list[Progress | None],
     ) -> tuple[Partial, str]:
         """The correlation without controls, and why geometry is not among them."""
         signals = [self.signal, *(name for name in (self.with_,) if name not in (*VELOCITIES, self.signal))]
-        found = self._controls.of(cell, activity, signals, phases[1])
+        found = self._controls.of(cell, activity, signals, steps[1])
         if not found.there:
             return Partial(None, np.nan), found.not_tested
         of_a = found.by_channel[self.signal]
@@ -148,7 +148,7 @@ class CellCorrelation:
         if self.options.against == "edge" and len(of_b):
             of_b = of_b.isel(layer=0, drop=True)
         a, b = (series[0], of_a), (series[1], of_b)
-        partial = partial_correlation(a, b, self.max_lag, self.options, phases[2], self._clusters(cell))
+        partial = partial_correlation(a, b, self.max_lag, self.options, steps[2], self._clusters(cell))
         return partial, found.not_tested or (partial.too_few if self.options.geometry else "")
 
     def _clusters(self, cell: int) -> dict[str, Any]:
@@ -188,17 +188,6 @@ def _shares_in_the_table() -> Iterator[None]:
         yield
 
 
-def _phases(progress: Progress | None, phases: int) -> list[Progress | None]:
-    """What to call with the steps done, and all steps, of each phase; they count alike."""
-    if progress is None:
-        return [None] * phases
-
-    def phase(place: int) -> Progress:
-        return lambda done, steps: progress(place * steps + done, phases * steps)
-
-    return [phase(place) for place in range(phases)]
-
-
 def _other(activity: xr.Dataset, with_: str, options: CorrelateParameters) -> xr.DataArray:
     """What the signal is correlated with, by sector or by window."""
     if with_ in VELOCITIES:
@@ -212,9 +201,4 @@ def _jitter(a: xr.DataArray, b: xr.DataArray, share: float, options: CorrelatePa
     marked = JITTERED_LAGS if not options.difference else JITTERED_DIFFERENCES
     if set(marked) <= set(options.skip_lags):
         return 0.0
-    lag = min(_LAG_FOR_JITTER, a.sizes["time"] - options.min_pairs)
-    if lag < _LEAST_LAG_FOR_JITTER:
-        return float("nan")
-    found = cross_correlate(a, b, lag, detrend=options.detrend, min_pairs=options.min_pairs)
-    steps = jitter_step(correlation_by_layer(found), velocity_share=share).to_numpy()
-    return float(steps[np.abs(steps).argmax()])
+    return largest_jitter(a, b, share, detrend=options.detrend, min_pairs=options.min_pairs)

@@ -11,14 +11,15 @@ from cytodisk.analysis.correlation.correlation_parameters import (
     PeakParameters,
     SkipLagsParameters,
 )
-from cytodisk.parameters import from_zero, in_order, parameter
+from cytodisk.parameters import parameter
+from cytodisk.runs.used_series.used_parameters import UsedSeriesParameters
 
 FEWEST_SURROGATES = 19
 
-_LONGEST_NAME = 60
 
-
-class CorrelateParameters(PeakParameters, SkipLagsParameters, PairCorrelationParameters):
+class CorrelateParameters(
+    UsedSeriesParameters, PeakParameters, SkipLagsParameters, PairCorrelationParameters
+):
     """What decides the result of `cytodisk correlate`, beside the study and its two signals."""
 
     max_lag: int | None = parameter(
@@ -54,22 +55,6 @@ class CorrelateParameters(PeakParameters, SkipLagsParameters, PairCorrelationPar
     pairs: bool = parameter(
         False, "Also correlate every window of one signal with every window of the other, by distance."
     )
-    frames: tuple[int, int] | None = parameter(
-        None,
-        "First and last frame that are used; without it all.",
-        words="the first and the last, such as 10:80",
-    )
-    without_frames: tuple[int, ...] = parameter(
-        (),
-        "Frames that are left out, such as those with a wrong mask.",
-        words="whole numbers, such as 17,24",
-    )
-    sectors: tuple[int, int] | None = parameter(
-        None,
-        "First and last sector that are used; 50:5 goes on over the last. Without it all.",
-        words="the first and the last, such as 10:80",
-    )
-    name: str = parameter("", "Keeps the result beside others of the same signals.")
 
     @field_validator("surrogates")
     @classmethod
@@ -77,20 +62,3 @@ class CorrelateParameters(PeakParameters, SkipLagsParameters, PairCorrelationPar
         if 0 < surrogates < FEWEST_SURROGATES:
             raise ValueError(f"must be 0, or at least {FEWEST_SURROGATES} for any p to reach 0.05")
         return surrogates
-
-    @field_validator("frames")
-    @classmethod
-    def _in_order(cls, frames: tuple[int, int] | None) -> tuple[int, int] | None:
-        return in_order(frames)
-
-    @field_validator("frames", "sectors", "without_frames")
-    @classmethod
-    def _from_zero(cls, numbers: tuple[int, ...] | None) -> tuple[int, ...] | None:
-        return from_zero(numbers)
-
-    @field_validator("name")
-    @classmethod
-    def _short(cls, name: str) -> str:
-        if len(name) > _LONGEST_NAME:
-            raise ValueError(f"must be a text of at most {_LONGEST_NAME} letters")
-        return name

@@ -16,6 +16,7 @@ from cytodisk.runs.correlate.correlation_tables import merged, of_cell
 from cytodisk.runs.flagged_cells import flags_by_cell
 from cytodisk.runs.qc_flags.one_correlation import UnwrittenCorrelation
 from cytodisk.runs.run_options import Progress
+from cytodisk.runs.used_series.progress_phases import percents
 from cytodisk.runs.versions import installed
 from cytodisk.store.correlation_store import Correlation, write_correlation
 from cytodisk.store.study import Study
@@ -66,7 +67,7 @@ def correlate_study(
         There is no such signal (the message lists those there are) or cell, a setting is out of range, or no
         cell could be correlated.
     """
-    chosen = _cells(study, cells)
+    chosen = chosen_cells(study, cells)
     options = CorrelateParameters.chosen(parameters, settings)
     names = channels_of(study)
     _check_names(names, signal, with_, options)
@@ -77,7 +78,7 @@ def correlate_study(
     rows = []
     for place, cell in enumerate(chosen):
         try:
-            tables, row = correlating.of(cell, _percents(progress, place, len(chosen)))
+            tables, row = correlating.of(cell, percents(progress, place, len(chosen)))
         except ParameterError as error:
             tables, row = {}, {"status": "refused", "reason": str(error)}
         rows.append({"cell": cell} | row)
@@ -118,7 +119,8 @@ def channels_of(study: Study) -> list[str]:
     return [str(name) for name in activity["channel"].to_numpy()]
 
 
-def _cells(study: Study, cells: list[int] | None) -> list[int]:
+def chosen_cells(study: Study, cells: list[int] | None) -> list[int]:
+    """Numbers of the cells that were asked for, or of all; raises ParameterError if one is not there."""
     there = sorted(int(cell) for cell in study.cells["cell"].unique())
     missing = [cell for cell in cells or [] if cell not in there]
     if missing:
@@ -128,13 +130,18 @@ def _cells(study: Study, cells: list[int] | None) -> list[int]:
     return sorted({int(cell) for cell in cells}) if cells else there
 
 
-def _check_names(names: list[str], signal: str, with_: str, options: CorrelateParameters) -> None:
+def refuse_velocity_channel(names: Sequence[str]) -> None:
+    """Raise ParameterError if a channel is called as the velocity of the edge is."""
     clash = sorted(set(names) & set(VELOCITIES))
     if clash:
         raise ParameterError(
             f"the study has a channel called {clash[0]!r}, as the velocity of the edge is: run cytodisk "
             "movie again with --channels to name it otherwise"
         )
+
+
+def _check_names(names: list[str], signal: str, with_: str, options: CorrelateParameters) -> None:
+    refuse_velocity_channel(names)
     listed = ", ".join(repr(name) for name in names)
     if signal not in names:
         raise ParameterError(f"signal {signal!r} is not in the study: it has {listed}")
@@ -178,10 +185,3 @@ def usual_lag(study: Study, cells: Sequence[int], min_pairs: int) -> int:
     there = study.cells
     frames = max(int((there["cell"] == cell).sum()) for cell in cells)
     return max(1, min(_LONGEST_LAG, frames // 4, frames - min_pairs))
-
-
-def _percents(progress: Progress | None, place: int, cells: int) -> Progress | None:
-    """What to call with the steps done and all steps of one of the cells, to report percents of all."""
-    if progress is None:
-        return None
-    return lambda done, steps: progress(100 * place + round(100 * done / steps), 100 * cells)

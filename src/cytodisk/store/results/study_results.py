@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from cytodisk.store.correlation_store import Correlation, list_correlations, read_correlation
+from cytodisk.store.predictions.prediction_store import Prediction, list_predictions, read_prediction
 
 
 class StudyResults:
@@ -35,3 +36,30 @@ class StudyResults:
             It is not there; the message lists those that are.
         """
         return read_correlation(self.path, signal, with_, name)
+
+    @property
+    def predictions(self) -> list[tuple[str, ...]]:
+        """What was tested for prediction: (source, target), () for the network; a variant's name comes third.
+
+        `study.prediction(*names)` opens each.
+        """
+        return list_predictions(self.path)
+
+    def prediction(self, source: str = "", target: str = "", name: str = "") -> Prediction:
+        """Read which signals predict which.
+
+        Parameters
+        ----------
+        source, target, name : str
+            As they were given to `cytodisk predict`; without source and target the network of all signals.
+
+        Returns
+        -------
+        Prediction
+
+        Raises
+        ------
+        ReadError
+            It is not there; the message lists those that are.
+        """
+        return read_prediction(self.path, source, target, name)

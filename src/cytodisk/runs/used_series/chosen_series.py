@@ -1,22 +1,22 @@
-"""The part of a cell's activity that is correlated: some frames, some sectors."""
+"""The part of a cell's activity that a command works on: some frames, some sectors."""
 
 from __future__ import annotations
 
 import xarray as xr
 
 from cytodisk.errors import ParameterError
-from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
+from cytodisk.runs.used_series.used_parameters import UsedSeriesParameters
 from cytodisk.store.activity_reading import EDGE_VARIABLES
 
 
-def chosen_series(activity: xr.Dataset, settings: CorrelateParameters) -> xr.Dataset:
+def chosen_series(activity: xr.Dataset, settings: UsedSeriesParameters) -> xr.Dataset:
     """Activity of the frames and sectors that settings ask for.
 
     Parameters
     ----------
     activity : Dataset
         Of one cell of a study.
-    settings : CorrelateParameters
+    settings : UsedSeriesParameters
         Its frames, without_frames and sectors.
 
     Returns
@@ -42,7 +42,7 @@ def chosen_series(activity: xr.Dataset, settings: CorrelateParameters) -> xr.Dat
     return activity
 
 
-def chosen_sectors(settings: CorrelateParameters, count: int) -> list[int]:
+def chosen_sectors(settings: UsedSeriesParameters, count: int) -> list[int]:
     """Numbers of the sectors that settings ask for, of so many; 50:5 goes on over the last.
 
     Raises

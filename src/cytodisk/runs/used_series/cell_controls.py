@@ -14,9 +14,9 @@ from cytodisk.analysis.controls.geometry_controls import geometry_controls
 from cytodisk.analysis.controls.without_controls import FEWEST_FRAMES
 from cytodisk.errors import CytodiskError
 from cytodisk.images.signal_files import FrameSource
-from cytodisk.runs.correlate.chosen_series import chosen_sectors
-from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.run_options import Progress
+from cytodisk.runs.used_series.chosen_series import chosen_sectors
+from cytodisk.runs.used_series.used_parameters import UsedSeriesParameters
 from cytodisk.store.inputs.study_signal import FoundSignal, find_signal
 from cytodisk.store.study import Study
 from cytodisk.windows.study_grid import polar_grid_of
@@ -52,17 +52,20 @@ class CellControls:
     study : Study
     max_lag : int
         In frames.
-    options : CorrelateParameters
+    options : UsedSeriesParameters
+    control : tuple of str
+        Channels that are regressed out, too.
     """
 
     study: Study
     max_lag: int
-    options: CorrelateParameters
+    options: UsedSeriesParameters
+    control: tuple[str, ...] = ()
 
     @property
     def asked(self) -> bool:
         """Whether anything is to be regressed out."""
-        return self.options.geometry or bool(self.options.control)
+        return self.options.geometry or bool(self.control)
 
     def of(
         self, cell: int, activity: xr.Dataset, channels: Sequence[str], progress: Progress | None
@@ -80,8 +83,7 @@ class CellControls:
         """
         options = self.options
         given = {
-            f"channel {name}": activity["mean"].sel(channel=name, drop=True).load()
-            for name in options.control
+            f"channel {name}": activity["mean"].sel(channel=name, drop=True).load() for name in self.control
         }
         by_channel = {channel: xr.Dataset(given) for channel in channels}
         if not options.geometry:
