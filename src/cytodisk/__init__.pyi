@@ -79,6 +79,10 @@ from .analysis.controls.without_controls import without_controls as without_cont
 from .analysis.events import edge_events as edge_events
 from .analysis.event_average import average_around as average_around
 
+# Prediction: does the past of one signal predict another
+from .analysis.prediction.predict import predict as predict
+from .analysis.prediction.prediction_parameters import PredictionParameters as PredictionParameters
+
 # Shapes
 from .analysis.shape.features import shape_features as shape_features
 from .analysis.shape.complexity import complexity_score as complexity_score

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -65,21 +66,57 @@ def named_series(a: Any, b: Any) -> tuple[xr.DataArray, xr.DataArray, Scale]:
         They are not numbers by time, have different frames or windows, or frames that are not evenly
         spaced.
     """
-    first, second = _named(a, "a"), _named(b, "b")
-    if first.sizes["time"] != second.sizes["time"]:
+    (first, second), scale = aligned_series({"a": a, "b": b})
+    return first, second, scale
+
+
+def aligned_series(signals: Mapping[str, Any]) -> tuple[list[xr.DataArray], Scale]:
+    """Sets of series with names and the same frames and windows, and their scale in time.
+
+    Parameters
+    ----------
+    signals : mapping of str to DataArray or array_like
+        As for `cross_correlate`, by their names in messages; the first is what others are compared with.
+
+    Returns
+    -------
+    list of DataArray with dims (time, …)
+        Without coordinates that are not dims.
+    scale : Scale
+        Of time alone, from the coordinate time_s, where one of them has it.
+
+    Raises
+    ------
+    ParameterError
+        As for `named_series`.
+    """
+    series = {name: _named(values, name) for name, values in signals.items()}
+    steps = {name: _interval(values, name) for name, values in series.items()}
+    first, *others = series
+    known = [name for name, step in steps.items() if step is not None]
+    for name in known[1:]:
+        if steps[name] != steps[known[0]]:
+            both = sorted({float(steps[one] or 0.0) for one in (known[0], name)})
+            raise ParameterError(f"{known[0]} and {name} have other seconds between frames: {both}")
+    for name in others:
+        _check_fit(first, series[first], name, series[name])
+    plain = [values.reset_coords(drop=True) for values in series.values()]
+    return plain, Scale(frame_interval_s=steps[known[0]] if known else None)
+
+
+def _check_fit(name_a: str, a: xr.DataArray, name_b: str, b: xr.DataArray) -> None:
+    """Refuse series of other frames or windows."""
+    if a.sizes["time"] != b.sizes["time"]:
         raise ParameterError(
-            f"a has {first.sizes['time']} frames, b {second.sizes['time']}: pass the same frames of both"
+            f"{name_a} has {a.sizes['time']} frames, {name_b} {b.sizes['time']}: pass the same frames of both"
         )
-    intervals = {step for step in (_interval(first, "a"), _interval(second, "b")) if step is not None}
-    if len(intervals) > 1:
-        raise ParameterError(f"a and b have other seconds between frames: {sorted(intervals)}")
-    _check_same_frames(first, second)
-    first, second = (series.reset_coords(drop=True) for series in (first, second))
+    _check_same_frames(name_a, a, name_b, b)
     try:
-        xr.align(first, second, join="exact")
+        xr.align(a.reset_coords(drop=True), b.reset_coords(drop=True), join="exact")
     except (xr.AlignmentError, ValueError) as error:
-        raise ParameterError(f"a and b do not have the same frames and windows: {error}") from error
-    return first, second, Scale(frame_interval_s=next(iter(intervals), None))
+        raise ParameterError(
+            f"{name_a} and {name_b} do not have the same frames and windows: {error}"
+        ) from error
 
 
 def paired(a: xr.DataArray, b: xr.DataArray) -> Pair:
@@ -114,7 +151,7 @@ def paired(a: xr.DataArray, b: xr.DataArray) -> Pair:
     )
 
 
-def _named(values: Any, name: Literal["a", "b"]) -> xr.DataArray:
+def _named(values: Any, name: str) -> xr.DataArray:
     if isinstance(values, xr.Dataset):
         raise ParameterError(
             f"{name} is a Dataset: pass one of its variables, such as {name}['mean'].sel(channel=…)"
@@ -140,7 +177,7 @@ def _named(values: Any, name: Literal["a", "b"]) -> xr.DataArray:
     return series
 
 
-def _check_same_frames(a: xr.DataArray, b: xr.DataArray) -> None:
+def _check_same_frames(name_a: str, a: xr.DataArray, name_b: str, b: xr.DataArray) -> None:
     """Refuse series that number their frames otherwise, one of them perhaps by frame, the other by time."""
     known_a, known_b = frame_coordinate(a), frame_coordinate(b)
     if known_a is None or known_b is None:
@@ -148,8 +185,8 @@ def _check_same_frames(a: xr.DataArray, b: xr.DataArray) -> None:
     frames_a, frames_b = a[known_a].to_numpy(), b[known_b].to_numpy()
     if not np.array_equal(frames_a, frames_b):
         raise ParameterError(
-            f"a and b do not have the same frames and windows: {known_a} of a begins with {frames_a[0]}, "
-            f"{known_b} of b with {frames_b[0]}"
+            f"{name_a} and {name_b} do not have the same frames and windows: {known_a} of {name_a} begins "
+            f"with {frames_a[0]}, {known_b} of {name_b} with {frames_b[0]}"
         )
 
 

@@ -1,0 +1,1 @@
+"""Whether the past of one signal predicts another, beyond that one's own past and its neighbours'."""
