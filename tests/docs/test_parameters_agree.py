@@ -59,6 +59,8 @@ FUNCTIONS = (
     cd.simulate.coupled_series,
     cd.simulate.predicting_series,
     cd.simulate.wave_series,
+    cd.simulate.predicting_movie,
+    cd.simulate.wave_movie,
 )
 UNITS = {"_um": "µm", "_s": "s", "_px": "px", "_px2": "px²"}
 

@@ -1,6 +1,9 @@
 """Cells, signals and random masks with known answers, for the demo, the docs, tests and benchmarks."""
 
 from cytodisk.simulate.cells import disk, dumbbell, ellipse, star
+from cytodisk.simulate.driven.driven_movies import DrivenMovie
+from cytodisk.simulate.driven.predicting_movies import predicting_movie
+from cytodisk.simulate.driven.wave_movies import wave_movie
 from cytodisk.simulate.label_images import label_image
 from cytodisk.simulate.mask_faults import flipped_masks, scaled_up_masks
 from cytodisk.simulate.movie_kinds import EDGE_KINDS, MOVIE_KINDS
@@ -54,6 +57,7 @@ __all__ = [
     "WAVE_KINDS",
     "CellWithNucleus",
     "CellsWithNuclei",
+    "DrivenMovie",
     "MovieWithNuclei",
     "PopulationImages",
     "SimulatedCell",
@@ -79,6 +83,7 @@ __all__ = [
     "passive_signal",
     "population",
     "population_images",
+    "predicting_movie",
     "predicting_series",
     "profile_signal",
     "random_mask",
@@ -89,5 +94,6 @@ __all__ = [
     "ring_signal",
     "scaled_up_masks",
     "star",
+    "wave_movie",
     "wave_series",
 ]

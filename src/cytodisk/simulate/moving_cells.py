@@ -151,7 +151,7 @@ def movie(kind: MovieKind = "migrating", seed: int = 0, **settings: Any) -> Simu
     drawn = jittered(
         path.boundary_yx[shown], habits.jitter_px, habits.jitter_length_px, np.random.default_rng([seed, 1])
     )
-    shape, shift = _image_frame(drawn, how.margin)
+    shape, shift = image_frame(drawn, how.margin)
     present = present_frames(frames, habits.dropped, np.random.default_rng([seed, 2]))
     displacement = normal_displacement(path.boundary_yx)
     boundary = path.boundary_yx[shown] + shift
@@ -184,7 +184,7 @@ def movie(kind: MovieKind = "migrating", seed: int = 0, **settings: Any) -> Simu
     )
 
 
-def _image_frame(drawn_yx: FloatArray, margin: int) -> tuple[tuple[int, int], FloatArray]:
+def image_frame(drawn_yx: FloatArray, margin: int) -> tuple[tuple[int, int], FloatArray]:
     """Shape of an image that holds all outlines, and the shift of positions into it."""
     low = np.floor(drawn_yx.min(axis=(0, 1))) - margin
     high = np.ceil(drawn_yx.max(axis=(0, 1))) + margin

@@ -11,8 +11,8 @@ Coupling = Literal["one way", "both ways", "none", "common driver"]
 COUPLINGS: tuple[Coupling, ...] = get_args(Coupling)
 
 
-class PredictingParameters(NeighbourParameters):
-    """Who predicts whom, how well, and what was measured of it."""
+class WhoPredictsParameters(NeighbourParameters):
+    """Who predicts whom, and how well."""
 
     coupling: Coupling = parameter(
         "one way",
@@ -34,6 +34,18 @@ class PredictingParameters(NeighbourParameters):
         0.0,
         "Correlation between the innovations of source and target in the same frame, which predicts nothing.",
     )
+
+    @field_validator("lags")
+    @classmethod
+    def _later(cls, lags: tuple[int, ...]) -> tuple[int, ...]:
+        if not lags or len(set(lags)) < len(lags) or min(lags) < 1 or max(lags) > 100:
+            raise ValueError(f"lags must be different whole numbers from 1 to 100, got {lags}")
+        return lags
+
+
+class PredictingParameters(WhoPredictsParameters):
+    """Who predicts whom, how well, and what was measured of it."""
+
     layered: bool = parameter(
         False,
         "The target has layers too, and each is coupled with the source of its layer. Else the target is by "
@@ -63,13 +75,6 @@ class PredictingParameters(NeighbourParameters):
         most=1000,
     )
     every: int = parameter(1, "Every which frame is kept: 3 keeps one in three.", least=1, most=100)
-
-    @field_validator("lags")
-    @classmethod
-    def _later(cls, lags: tuple[int, ...]) -> tuple[int, ...]:
-        if not lags or len(set(lags)) < len(lags) or min(lags) < 1 or max(lags) > 100:
-            raise ValueError(f"lags must be different whole numbers from 1 to 100, got {lags}")
-        return lags
 
     @model_validator(mode="after")
     def _has_layers(self) -> Self:

@@ -8,7 +8,7 @@ from cytodisk.parameters import parameter
 from cytodisk.simulate.series_parameters import NeighbourParameters
 
 
-class WaveParameters(NeighbourParameters):
+class RunningParameters(NeighbourParameters):
     """How a wave runs, and the noise around it."""
 
     mode: int = parameter(
@@ -29,18 +29,12 @@ class WaveParameters(NeighbourParameters):
         most=1,
         words="1 or -1",
     )
-    edge_length_um: float = parameter(
-        100.0, "Length of the edge, which makes turns per second µm/s.", above=0, most=1e6, unit="µm"
-    )
     wavelength_um: float = parameter(
         10.0,
         'Distance between two crests on the way to the centre, for "spiral", "inward" and "outward".',
         above=0,
         most=1e6,
         unit="µm",
-    )
-    layer_depth_um: float = parameter(
-        1.0, "Depth of each layer of windows; the first begins at the edge.", above=0, most=1e6, unit="µm"
     )
     amplitude: float = parameter(
         1.0, "Height of the crests; of the largest one, where a wave stands.", above=0, most=1e6
@@ -81,3 +75,14 @@ class WaveParameters(NeighbourParameters):
                 f"{self.period_s:g}: take a shorter frame_interval_s"
             )
         return self
+
+
+class WaveParameters(RunningParameters):
+    """How a wave runs through windows, and the noise around it."""
+
+    edge_length_um: float = parameter(
+        100.0, "Length of the edge, which makes turns per second µm/s.", above=0, most=1e6, unit="µm"
+    )
+    layer_depth_um: float = parameter(
+        1.0, "Depth of each layer of windows; the first begins at the edge.", above=0, most=1e6, unit="µm"
+    )

@@ -1,0 +1,1 @@
+"""Cells whose edge and channels are moved by series with a known truth."""
