@@ -77,7 +77,7 @@ class RunningParameters(NeighbourParameters):
         return self
 
 
-class WaveParameters(RunningParameters):
+class WaveSeriesParameters(RunningParameters):
     """How a wave runs through windows, and the noise around it."""
 
     edge_length_um: float = parameter(

@@ -10,7 +10,7 @@ from cytodisk.arrays import ComplexArray, FloatArray
 from cytodisk.checks import one_of
 from cytodisk.errors import ParameterError
 from cytodisk.simulate.null_series import check_sizes, window_noise
-from cytodisk.simulate.waves.wave_parameters import WaveParameters
+from cytodisk.simulate.waves.wave_parameters import WaveSeriesParameters
 from cytodisk.simulate.waves.wave_phases import directions, running_phase, wandering
 from cytodisk.taking import takes
 
@@ -22,7 +22,7 @@ _INWARDS = {"spiral": 1.0, "inward": 1.0, "outward": -1.0}
 _BURN_IN = 20.0  # memories of the noise before the first frame
 
 
-@takes(WaveParameters)
+@takes(WaveSeriesParameters)
 def wave_series(
     kind: WaveKind, seed: int, frames: int, sectors: int, layers: int | None = None, **settings: Any
 ) -> xr.DataArray:
@@ -42,7 +42,7 @@ def wave_series(
     layers : int, optional
         Without it there is the edge alone, which "spiral", "inward" and "outward" refuse.
     **settings
-        See `WaveParameters`.
+        See `WaveSeriesParameters`.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def wave_series(
     >>> cd.simulate.wave_series("spiral", 0, 60, 36, 4, wavelength_um=8.0).attrs["inward_speed_um_s"]
     0.08
     """
-    how = WaveParameters.of(**settings)
+    how = WaveSeriesParameters.of(**settings)
     kind = one_of("kind", kind, WAVE_KINDS)
     check_sizes(seed, frames, 1 if layers is None else layers, sectors)
     mode = how.mode if kind in _WITH_MODES else 0
@@ -129,17 +129,17 @@ def _check_kind(kind: WaveKind, sectors: int, layers: int | None, mode: int) -> 
         )
 
 
-def _step(how: WaveParameters) -> float:
+def _step(how: WaveSeriesParameters) -> float:
     return 2.0 * np.pi * how.frame_interval_s / how.period_s
 
 
-def _persistence(how: WaveParameters) -> float:
+def _persistence(how: WaveSeriesParameters) -> float:
     """In frames."""
     return np.inf if how.persistence_s is None else how.persistence_s / how.frame_interval_s
 
 
 def _pattern(
-    kind: WaveKind, seed: int, phase: FloatArray, shape: tuple[int, int], how: WaveParameters
+    kind: WaveKind, seed: int, phase: FloatArray, shape: tuple[int, int], how: WaveSeriesParameters
 ) -> FloatArray:
     """The wave without noise, of amplitude 1, in the cell's frame; shape (T, L, S)."""
     layers, sectors = shape
@@ -155,7 +155,7 @@ def _pattern(
     return np.asarray(np.cos(around + inwards[:, None] - time))
 
 
-def _own_phases(seed: int, frames: int, shape: tuple[int, int], how: WaveParameters) -> ComplexArray:
+def _own_phases(seed: int, frames: int, shape: tuple[int, int], how: WaveSeriesParameters) -> ComplexArray:
     """Complex noise of variance 1, white in time, correlated along the edge and inwards."""
     parts = [
         window_noise(np.random.default_rng([seed, stream]), frames, shape, how.correlation_length)
@@ -169,7 +169,7 @@ def _deviation(kind: WaveKind, mode: int) -> float:
     return 0.5 if kind == "standing" and mode else float(np.sqrt(0.5))
 
 
-def _noise(seed: int, frames: int, shape: tuple[int, int], how: WaveParameters) -> FloatArray:
+def _noise(seed: int, frames: int, shape: tuple[int, int], how: WaveSeriesParameters) -> FloatArray:
     """Noise of variance 1, stationary from the first frame on."""
     before = int(np.ceil(_BURN_IN / (1.0 - how.noise_memory))) if how.noise_memory else 0
     white = window_noise(np.random.default_rng([seed, 5]), frames + before, shape, how.correlation_length)
@@ -200,7 +200,7 @@ def turned(values: FloatArray, turns: FloatArray) -> FloatArray:
     return np.asarray(np.fft.irfft(modes * back, n=values.shape[-1], axis=-1))
 
 
-def _truth(kind: WaveKind, seed: int, mode: int, how: WaveParameters) -> dict[str, Any]:
+def _truth(kind: WaveKind, seed: int, mode: int, how: WaveSeriesParameters) -> dict[str, Any]:
     direction = how.direction if kind in ("running", "spiral") else 0
     speed = direction / (mode * how.period_s) if direction else 0.0
     shared = ("period_s", "frame_interval_s", "edge_length_um", "amplitude", "noise", "noise_memory")
