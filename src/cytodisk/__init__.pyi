@@ -113,6 +113,7 @@ from .runs.map.run_map import run_map as run_map
 from .runs.movie.run_movie import run_movie as run_movie
 from .runs.shapes.run_shapes import run_shapes as run_shapes
 from .runs.correlate.run_correlate import run_correlate as run_correlate
+from .runs.predict.run_predict import run_predict as run_predict
 from .runs.population.correlations.run_batch_correlate import run_batch_correlate as run_batch_correlate
 from .runs.compare_windows.run_compare_windows import run_compare_windows as run_compare_windows
 from .runs.batch.run_batch import run_batch as run_batch
@@ -122,6 +123,7 @@ from .runs.map.map_parameters import MapParameters as MapParameters
 from .runs.movie.movie_parameters import MovieParameters as MovieParameters
 from .runs.shapes.shape_parameters import ShapeParameters as ShapeParameters
 from .runs.correlate.correlate_parameters import CorrelateParameters as CorrelateParameters
+from .runs.predict.predict_parameters import PredictParameters as PredictParameters
 from .runs.population.correlations.pool_parameters import BatchCorrelateParameters as BatchCorrelateParameters
 from .runs.population.correlations.pool_parameters import PoolOptions as PoolOptions
 from .runs.compare_windows.compare_parameters import CompareWindowsParameters as CompareWindowsParameters

@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 from cytodisk.files import replacing
 from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.merging import repeating
+from cytodisk.store.predictions.prediction_store import Prediction
 from cytodisk.store.study import Study
 from cytodisk.store.study_folder import StudyFolder
 from cytodisk.store.study_kind import CELLS
@@ -78,6 +79,25 @@ def flags_by_cell(study: Study, found: Correlation) -> list[str]:
     from cytodisk.runs.qc_flags.study_flags import correlation_flags_of
 
     flags = correlation_flags_of(with_one(study, found))
+    return names_by_row(flags, [(cell, None) for cell in found.cells["cell"]])
+
+
+def prediction_flags_by_cell(study: Study, found: Prediction) -> list[str]:
+    """Names of the QC flags of a prediction, by row of its table of cells.
+
+    Parameters
+    ----------
+    study : Study
+    found : Prediction
+
+    Returns
+    -------
+    list of str
+    """
+    from cytodisk.runs.qc_flags.one_prediction import with_one_prediction
+    from cytodisk.runs.qc_flags.study_flags import prediction_flags_of
+
+    flags = prediction_flags_of(with_one_prediction(study, found))
     return names_by_row(flags, [(cell, None) for cell in found.cells["cell"]])
 
 

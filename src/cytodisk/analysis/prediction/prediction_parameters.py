@@ -44,19 +44,11 @@ class OrderParameters(Parameters):
     )
 
 
-class PredictionParameters(OrderParameters):
-    """How one signal predicts another."""
+class HeldParameters(OrderParameters):
+    """What is held against the source, and what chance would give."""
 
     neighbours: bool = parameter(
         True, "Also hold against the source what the past of both neighbours along the edge predicts."
-    )
-    edge_sectors: int | None = parameter(
-        None,
-        "Number of sectors of the whole edge, where only some are passed: its last one is the neighbour of "
-        "sector 0. Without it, sectors numbered from 0 without a gap are the whole edge.",
-        least=1,
-        most=100_000,
-        unit="sectors",
     )
     surrogates: int = parameter(
         999,
@@ -65,3 +57,16 @@ class PredictionParameters(OrderParameters):
         most=MOST_SURROGATES,
     )
     seed: int = parameter(0, "Seed of the shifts.", least=0, most=MOST_SEED)
+
+
+class PredictionParameters(HeldParameters):
+    """How one signal predicts another."""
+
+    edge_sectors: int | None = parameter(
+        None,
+        "Number of sectors of the whole edge, where only some are passed: its last one is the neighbour of "
+        "sector 0. Without it, sectors numbered from 0 without a gap are the whole edge.",
+        least=1,
+        most=100_000,
+        unit="sectors",
+    )

@@ -29,7 +29,22 @@ class UnwrittenCorrelation(Correlation):
 
 
 @dataclass(frozen=True)
-class StudyOfOne(Study):
+class StudyOfNone(Study):
+    """A study that knows of nothing that was computed from it."""
+
+    @property
+    def correlations(self) -> list[tuple[str, ...]]:
+        """None."""
+        return []
+
+    @property
+    def predictions(self) -> list[tuple[str, ...]]:
+        """None."""
+        return []
+
+
+@dataclass(frozen=True)
+class StudyOfOne(StudyOfNone):
     """A study that knows of one correlation.
 
     Attributes

@@ -45,6 +45,35 @@ def correlate_again(study: Study, names: Sequence[str], variant: str, **changes:
     return shlex.join([*words, *cells, *_flags(given | changes), "--name", called])
 
 
+def predict_again(study: Study, names: Sequence[str], variant: str, **changes: Any) -> str:
+    """The command that tests a prediction again in another way, beside what is there.
+
+    Parameters
+    ----------
+    study : Study
+    names : sequence of str
+        Source, target and the name of a variant, as of `Study.predictions`; none for a network.
+    variant : str
+        Name of the new one.
+    **changes
+        Parameters of `cytodisk predict`. All others stay as they were given.
+
+    Returns
+    -------
+    str
+        As "cytodisk predict out --source Rac1 --target velocity --given RhoA --name given".
+    """
+    source, target, *own = (*names, "", "")[:3] if len(names) < 3 else names
+    settings = study.prediction(*names).settings if tuple(names) in study.predictions else {}
+    asked = dict(settings.get("asked") or {})
+    asked.pop("name", None)
+    cells = [f"--cell={cell}" for cell in settings.get("cells") or ()]
+    called = "_".join(filter(None, [*own, variant]))[:_LONGEST_NAME]
+    words = ["cytodisk", "predict", shown_path(str(study.path))]
+    words += ["--source", source, "--target", target] if source else []
+    return shlex.join([*words, *cells, *_flags(asked | changes), "--name", called])
+
+
 def correlate_command(study: Study, signal: str) -> str:
     """The command that correlates a channel with the edge, as "cytodisk correlate out --signal Rac1"."""
     return shlex.join(["cytodisk", "correlate", shown_path(str(study.path)), "--signal", signal])

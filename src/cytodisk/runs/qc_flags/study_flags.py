@@ -16,6 +16,7 @@ from cytodisk.runs.qc_flags import (
     motion_flags,
     nucleus_flags,
     nucleus_jumps,
+    prediction_flags,
     stress_flags,
     window_flags,
 )
@@ -56,7 +57,7 @@ def qc_flags(study: Study) -> list[QCFlag]:
     >>> cd.qc_flags(study)  # nothing to doubt
     []
     """
-    found = [*run_flags(study), *correlation_flags_of(study)]
+    found = [*run_flags(study), *correlation_flags_of(study), *prediction_flags_of(study)]
     return [*found, *_other_warnings(study, found)]
 
 
@@ -68,6 +69,11 @@ def run_flags(study: Study) -> list[QCFlag]:
 def correlation_flags_of(study: Study) -> list[QCFlag]:
     """Those of the study's correlations."""
     return [flag for rule in _CORRELATION_RULES for flag in rule(study)]
+
+
+def prediction_flags_of(study: Study) -> list[QCFlag]:
+    """Those of the study's predictions."""
+    return [flag for rule in prediction_flags.PREDICTION_RULES for flag in rule(study)]
 
 
 def _other_warnings(study: Study, found: Sequence[QCFlag]) -> Iterator[QCFlag]:

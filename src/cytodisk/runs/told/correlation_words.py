@@ -86,9 +86,14 @@ def replaced_words(before: dict[str, Any] | None, now: dict[str, Any]) -> str:
     if before is None:
         return ""
     usual = "max_lag" if now["max_lag"] is None else ""  # which that is, is known at the end
-    changed = [name for name in now if name in before and name != usual]
-    told = [_setting_words(name, before[name]) for name in changed if not _same(before[name], now[name])]
+    told = changed_settings(before, {name: value for name, value in now.items() if name != usual})
     return f"The earlier correlation ({', '.join(told)}) will be replaced" if told else ""
+
+
+def changed_settings(before: dict[str, Any], now: dict[str, Any]) -> list[str]:
+    """Earlier settings that are others now, in words, as "--detrend none"."""
+    changed = [name for name in now if name in before and not _same(before[name], now[name])]
+    return [_setting_words(name, before[name]) for name in changed]
 
 
 def _same(before: Any, now: Any) -> bool:

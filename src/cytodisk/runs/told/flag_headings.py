@@ -27,6 +27,15 @@ CORRELATION_GROUPS = {
 }
 """The same for a command with the flag `--with`."""
 
+PREDICTION_GROUPS = {
+    "What is tested": "source target given cell frames without-frames sectors geometry",
+    "Many movies": "groups compare permutations resume",
+    "How it is tested": "max-order order source-order given-order criterion neighbours detrend surrogates "
+    "seed",
+    "Results": "name csv figures format parameters quiet help",
+}
+"""The same for a command with the flag `--source`."""
+
 POPULATION_GROUPS = {
     "What is compared": "compare channel scalars groups dose dose-scale",
     "What each cell contributes": "summary normalise align",
@@ -57,7 +66,8 @@ def grouped(flags: Sequence[str]) -> list[tuple[str, list[str]]]:
     >>> grouped(["csv", "sectors", "signal", "layers"])
     [('Files', ['signal']), ('Windows', ['layers', 'sectors']), ('Results', ['csv'])]
     """
-    groups = CORRELATION_GROUPS if "with" in flags else POPULATION_GROUPS if "compare" in flags else GROUPS
+    marks = {"with": CORRELATION_GROUPS, "source": PREDICTION_GROUPS, "compare": POPULATION_GROUPS}
+    groups = next((own for mark, own in marks.items() if mark in flags), GROUPS)
     found: list[tuple[str, list[str]]] = []
     left = list(flags)
     for heading, names in groups.items():

@@ -1,0 +1,47 @@
+"""Links between signals in words: what predicts what."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pandas as pd
+
+from cytodisk.analysis.correlation.jitter_mark import JITTERING_SHARE
+from cytodisk.runs.channel_names import VELOCITIES, shown_name
+
+SURE_FRAMES = 60
+"""Frames below which a prediction of usual strength is mostly missed."""
+
+_EDGE = {"velocity": "edge velocity", "velocity_cell_frame": "edge velocity (cell frame)"}
+
+
+def signal_words(name: str) -> str:
+    """A signal in a sentence, as "Rac1", "signal 'edge'" or "edge velocity"."""
+    if name in _EDGE:
+        return _EDGE[name]
+    shown = shown_name(name)
+    return f"signal '{shown}'" if shown.islower() and " " not in shown else shown
+
+
+def prediction_name(source: str = "", target: str = "", name: str = "") -> str:
+    """Words for a prediction, as an item of `Study.predictions`: "Rac1 and velocity (early frames)"."""
+    words = f"{shown_name(source)} and {shown_name(target)}" if source else "network"
+    return f"{words} ({name})" if name else words
+
+
+def less_error(gain: float) -> str:
+    """A gain as the share by which the error of the prediction is smaller, as "4.2 % less error"."""
+    share = 100.0 * (1.0 - math.exp(-gain))
+    return f"{share:.2g} % less error" if share < 10.0 else f"{share:.0f} % less error"
+
+
+def jitters(row: Any) -> bool:
+    """Whether masks of a cell jitter, by its row in the table of cells; False where that is not known."""
+    step, share = (pd.to_numeric(row[name]) for name in ("jitter", "velocity_jitter"))
+    return bool(abs(step) > 0 or share >= JITTERING_SHARE)
+
+
+def is_of_velocity(link: Any) -> bool:
+    """Whether source or target of a link is a velocity of the edge."""
+    return link["source"] in VELOCITIES or link["target"] in VELOCITIES
