@@ -48,6 +48,16 @@ from .correlation.event_curves import draw_events as draw_events
 from .correlation.event_curves import draw_event_average as draw_event_average
 from .correlation.event_curves import band_key as band_key
 
+# Waves
+from .waves.wave_kymograph import draw_wave_kymograph as draw_wave_kymograph
+from .waves.wave_kymograph import draw_wave_phase as draw_wave_phase
+from .waves.phase_colours import phase_key as phase_key
+from .waves.phase_places import draw_phase_on_cell as draw_phase_on_cell
+from .waves.phase_places import draw_phase_on_disk as draw_phase_on_disk
+from .waves.mode_power import draw_mode_power as draw_mode_power
+from .waves.wave_spectrum import draw_wave_spectrum as draw_wave_spectrum
+from .waves.depth_speeds import draw_depth_speeds as draw_depth_speeds
+
 # Shapes
 from .shape.shape_plane import draw_shape_landscape as draw_shape_landscape
 from .shape.shape_rows import draw_shape_examples as draw_shape_examples

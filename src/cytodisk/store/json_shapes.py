@@ -75,6 +75,21 @@ class _PredictionSettings(TypedDict, total=False):
 
 
 @with_config(_ANYTHING_ELSE)
+class _WaveSettings(TypedDict, total=False):
+    signal: Required[_Text]
+    name: _Text
+    tables: dict[str, dict[str, _Kind]]
+    layer: _Count
+    surrogates: _Count
+    seed: _Seed
+    geometry: _Truth
+    without_frames: list[_Whole]
+    frames: Annotated[list[_Count], _Two] | None
+    given: dict[str, Any]
+    surrogates_made: _Count
+
+
+@with_config(_ANYTHING_ELSE)
 class _Input(TypedDict, total=False):
     path: Required[_Text]
     sha256: _Text
@@ -139,6 +154,12 @@ def correlation_settings() -> TypeAdapter[Any]:
 def prediction_settings() -> TypeAdapter[Any]:
     """Of `settings.json` of a prediction."""
     return TypeAdapter(_PredictionSettings)
+
+
+@cache
+def wave_settings() -> TypeAdapter[Any]:
+    """Of `settings.json` of waves."""
+    return TypeAdapter(_WaveSettings)
 
 
 @cache

@@ -7,8 +7,8 @@ from cytodisk.parameters import Parameters, from_zero, in_order, parameter
 _LONGEST_NAME = 60
 
 
-class UsedSeriesParameters(Parameters):
-    """Which part of a study's series is used, and what the result is called."""
+class UsedFramesParameters(Parameters):
+    """Which frames of a study's series are used, and what the result is called."""
 
     geometry: bool = parameter(True, "Also do without what geometry alone would give.")
     frames: tuple[int, int] | None = parameter(
@@ -21,11 +21,6 @@ class UsedSeriesParameters(Parameters):
         "Frames that are left out, such as those with a wrong mask.",
         words="whole numbers, such as 17,24",
     )
-    sectors: tuple[int, int] | None = parameter(
-        None,
-        "First and last sector that are used; 50:5 goes on over the last. Without it all.",
-        words="the first and the last, such as 10:80",
-    )
     name: str = parameter("", "Keeps the result beside others of the same signals.")
 
     @field_validator("frames")
@@ -33,7 +28,7 @@ class UsedSeriesParameters(Parameters):
     def _in_order(cls, frames: tuple[int, int] | None) -> tuple[int, int] | None:
         return in_order(frames)
 
-    @field_validator("frames", "sectors", "without_frames")
+    @field_validator("frames", "without_frames")
     @classmethod
     def _from_zero(cls, numbers: tuple[int, ...] | None) -> tuple[int, ...] | None:
         return from_zero(numbers)
@@ -44,3 +39,18 @@ class UsedSeriesParameters(Parameters):
         if len(name) > _LONGEST_NAME:
             raise ValueError(f"must be a text of at most {_LONGEST_NAME} letters")
         return name
+
+
+class UsedSeriesParameters(UsedFramesParameters):
+    """Which frames and sectors of a study's series are used."""
+
+    sectors: tuple[int, int] | None = parameter(
+        None,
+        "First and last sector that are used; 50:5 goes on over the last. Without it all.",
+        words="the first and the last, such as 10:80",
+    )
+
+    @field_validator("sectors")
+    @classmethod
+    def _sectors_from_zero(cls, numbers: tuple[int, ...] | None) -> tuple[int, ...] | None:
+        return from_zero(numbers)

@@ -42,11 +42,14 @@ class DerivedFolder:
         What was asked for, the version of cytodisk, and names and types of the columns of the tables.
     command : str
         The command that writes such a folder.
+    may_be_empty : tuple of str
+        Keys that rows of its tables can do without, as the layer in what is told of the edge.
     """
 
     path: Path
     settings: dict[str, Any]
     command: ClassVar[str]
+    may_be_empty: ClassVar[tuple[str, ...]] = ()
 
     def _optional(self, name: str) -> pd.DataFrame | None:
         return self._table(name) if (self.path / f"{name}.parquet").exists() else None
@@ -55,7 +58,8 @@ class DerivedFolder:
         told = self.settings.get(TABLES, {}).get(name, {})
         columns = tuple(Column(column, pa.type_for_alias(kind), "", "") for column, kind in told.items())
         file = self.path / f"{name}.parquet"
-        return read_checked(file, columns, remedy=remedy(self.command), finite=False)
+        how: Any = {"remedy": remedy(self.command), "finite": False, "may_be_empty": self.may_be_empty}
+        return read_checked(file, columns, **how)
 
 
 def remedy(command: str) -> str:

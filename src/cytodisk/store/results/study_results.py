@@ -6,6 +6,7 @@ from pathlib import Path
 
 from cytodisk.store.correlation_store import Correlation, list_correlations, read_correlation
 from cytodisk.store.predictions.prediction_store import Prediction, list_predictions, read_prediction
+from cytodisk.store.waves.waves_store import Waves, list_waves, read_waves
 
 
 class StudyResults:
@@ -63,3 +64,27 @@ class StudyResults:
             It is not there; the message lists those that are.
         """
         return read_prediction(self.path, source, target, name)
+
+    @property
+    def wave_signals(self) -> list[tuple[str, ...]]:
+        """What waves were looked for in: (signal,), or (signal, name) for a variant."""
+        return list_waves(self.path)
+
+    def waves(self, signal: str = "velocity", name: str = "") -> Waves:
+        """Read the waves of the edge's velocity, or of a signal.
+
+        Parameters
+        ----------
+        signal, name : str
+            As they were given to `cytodisk waves`.
+
+        Returns
+        -------
+        Waves
+
+        Raises
+        ------
+        ReadError
+            They are not there; the message lists those that are.
+        """
+        return read_waves(self.path, signal, name)

@@ -1,0 +1,1 @@
+"""Waves that were looked for in a study, on disk."""
