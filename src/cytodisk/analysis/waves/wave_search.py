@@ -1,0 +1,143 @@
+"""Looks for the strongest wave around a cell, and among surrogates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from cytodisk.analysis.waves.edge_modes import highest_mode, mode_weights, modes_of
+from cytodisk.analysis.waves.edge_series import EdgeSeries, check_shown
+from cytodisk.analysis.waves.mode_spectrum import Bands, bands, refined_frequency, wave_cells
+from cytodisk.analysis.waves.wave_background import background, wave_scores, with_sums
+from cytodisk.analysis.waves.wave_surrogates import WaveNull
+from cytodisk.analysis.waves.waves_parameters import WaveSearchParameters
+from cytodisk.arrays import ComplexArray, FloatArray
+
+_OVERLAP = 1.5  # frequencies in which the power of one is found, under the taper
+
+
+@dataclass(frozen=True, eq=False)
+class WaveFound:
+    """The strongest wave.
+
+    Attributes
+    ----------
+    mode : int
+        Waves around the cell.
+    frequency : float
+        In 1/s.
+    score : float
+    null : ndarray of shape (R,) and dtype float
+        Scores of surrogates.
+    power : ndarray of shape (M + 1,) and dtype float
+        Share of the variance that each mode has at the periods that are looked for.
+    modes : ndarray of shape (T, M + 1) and dtype complex
+        Of the frames that are used.
+    seconds : ndarray of shape (T,) and dtype float
+        Of these frames.
+    periods : tuple of float
+        Shortest and longest that the movie can show, in seconds.
+    """
+
+    mode: int
+    frequency: float
+    score: float
+    null: FloatArray
+    power: FloatArray
+    modes: ComplexArray
+    seconds: FloatArray
+    periods: tuple[float, float]
+
+
+class WaveSearch:
+    """Modes, periods and scores of one cell.
+
+    Parameters
+    ----------
+    series : EdgeSeries
+    how : WaveSearchParameters
+
+    Raises
+    ------
+    ParameterError
+        As for `check_shown`.
+    """
+
+    def __init__(self, series: EdgeSeries, how: WaveSearchParameters) -> None:
+        self.periods = check_shown(series, how)
+        self.series = series
+        used = series.used
+        self.values, self.seconds = series.values[used], series.seconds[used]
+        self.bands: Bands = bands(self.seconds, *self.periods, series.interval)
+        self.highest = highest_mode(series.values.shape[1], how.max_mode)
+        self._weights = mode_weights(series.lengths[used], np.isfinite(self.values), self.highest)
+        self.modes: ComplexArray = modes_of(self.values[:, :, None], self._weights)[:, :, 0]
+        self._variance = float(np.nanmean(np.nanvar(self.values, axis=0)))
+
+    def power(self, movies: FloatArray) -> FloatArray:
+        """Power (K, C, R) of movies (T, S, R)."""
+        return wave_cells(modes_of(movies, self._weights), self.bands)
+
+    def scores(self, power: FloatArray) -> FloatArray:
+        """Scores (visible, 3 M + 1, R)."""
+        excess = background(power, self.bands.frequencies).excess
+        variance = np.full(power.shape[2], self._variance)
+        return wave_scores(power, excess, variance, self.bands.visible)
+
+    def null_scores(
+        self, how: WaveSearchParameters, sums: FloatArray, progress: Callable[[int, int], None] | None
+    ) -> FloatArray:
+        """Largest score of each surrogate."""
+        found: list[float] = []
+        for movies in WaveNull(self.series, self.bands, how.seed).draw(how.surrogates):
+            power = self.power(movies)
+            if self.highest:
+                power = with_sums(power, sums)
+            found.extend(self.scores(power).max(axis=(0, 1)))
+            if progress is not None:
+                progress(len(found), how.surrogates)
+        return np.array(found)
+
+
+def strongest_wave(
+    series: EdgeSeries, how: WaveSearchParameters, progress: Callable[[int, int], None] | None = None
+) -> WaveFound:
+    """The wave with the largest score, and the scores of surrogates.
+
+    Parameters
+    ----------
+    series : EdgeSeries
+    how : WaveSearchParameters
+    progress : callable, optional
+        Called with (surrogates done, in all).
+
+    Raises
+    ------
+    ParameterError
+        As for `check_shown`.
+    """
+    search = WaveSearch(series, how)
+    power = search.power(search.values[:, :, None])
+    scores = search.scores(power)[:, :, 0]
+    place, wave = np.unravel_index(int(scores.argmax()), scores.shape)
+    mode = wave_mode(int(wave), search.highest)
+    step = 1.0 / (search.seconds[-1] - search.seconds[0])
+    within = (1.0 / search.periods[1], 1.0 / search.periods[0])
+    frequency = refined_frequency(
+        search.modes[:, mode], search.seconds, float(search.bands.frequencies[place]), step, within
+    )
+    shares = power[: search.bands.visible, :, 0].sum(axis=0) / (_OVERLAP * search._variance)
+    highest = search.highest
+    by_mode = shares[: highest + 1].copy()
+    by_mode[1:] += shares[highest + 1 :]
+    null = search.null_scores(how, power[:, :, 0].sum(axis=1), progress)
+    return WaveFound(
+        mode, frequency, float(scores.max()), null, by_mode, search.modes, search.seconds, search.periods
+    )
+
+
+def wave_mode(wave: int, highest: int) -> int:
+    """Mode of a column of scores."""
+    return wave if wave <= highest else (wave - highest - 1) % highest + 1
