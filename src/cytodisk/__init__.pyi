@@ -35,6 +35,9 @@ from .windows.sample import sample as sample
 from .windows.edge_windows import edge_windows as edge_windows
 from .windows.edge_windows import EdgeGrid as EdgeGrid
 from .windows.edge_windows import EdgeWindows as EdgeWindows
+from .windows.springs.spring_windows import spring_windows as spring_windows
+from .windows.springs.spring_windows import SpringGrid as SpringGrid
+from .windows.springs.spring_windows import SpringWindows as SpringWindows
 from .windows.ring_windows import ring_windows as ring_windows
 from .windows.ring_windows import RingGrid as RingGrid
 from .windows.ring_windows import RingWindows as RingWindows

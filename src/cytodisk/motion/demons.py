@@ -62,7 +62,7 @@ def propagate(
     """
     mask_here, mask_there, low = _rasterise(here, there)
     points = _checked(points_yx, low, mask_here.shape) - low
-    field = _displacement(mask_here, mask_there, parameters)
+    field = displacement_between(mask_here, mask_there, parameters.iterations, parameters.sigma)
     moved = points + np.column_stack([sample_field(component, points) for component in field])
     edges = edge_map(mask_there)
     flow = gradient_vector_flow(edges, parameters)
@@ -109,29 +109,62 @@ def space_evenly(points_yx: FloatArray) -> FloatArray:
     return np.asarray(spline(np.interp(wanted, arc, parameter)), dtype=np.float64)
 
 
-def _simple_itk() -> Any:
-    """The package, whose functions have no types."""
+def simple_itk(needed_by: str = 'tracker "demons"') -> Any:
+    """The package, whose functions have no types.
+
+    Parameters
+    ----------
+    needed_by : str
+        What cannot be done without it.
+
+    Raises
+    ------
+    MissingPartError
+        It is not installed.
+    """
     try:
         import SimpleITK
     except ImportError as error:
-        raise MissingPartError.of('tracker "demons" needs SimpleITK', "demons") from error
+        raise MissingPartError.of(f"{needed_by} needs SimpleITK", "demons") from error
     return SimpleITK
 
 
-def _displacement(fixed: BoolArray, moving: BoolArray, parameters: DemonsParameters) -> FloatArray:
-    """Displacement (row, column) in pixels that takes each pixel of one mask to its place in the other.
+def displacement_between(
+    fixed: BoolArray, moving: BoolArray, iterations: int, sigma: float, start: FloatArray | None = None
+) -> FloatArray:
+    """Displacement that takes each pixel of one mask to its place in the other, by symmetric-forces demons.
 
-    Shape (2, H, W).
+    Parameters
+    ----------
+    fixed, moving : ndarray of shape (H, W) and dtype bool
+    iterations : int
+    sigma : float
+        Standard deviation of the smoothing of the field after each iteration, in pixels.
+    start : ndarray of shape (2, H, W) and dtype float, optional
+        Where the field starts; without it at no displacement.
+
+    Returns
+    -------
+    ndarray of shape (2, H, W) and dtype float
+        (row, column) in pixels, on the pixels of `fixed`.
+
+    Raises
+    ------
+    MissingPartError
+        SimpleITK is not installed.
     """
-    sitk = _simple_itk()
+    sitk = simple_itk()
     demons = sitk.SymmetricForcesDemonsRegistrationFilter()
     # The sums over threads depend on their number.
     demons.SetNumberOfThreads(1)
-    demons.SetNumberOfIterations(int(parameters.iterations))
-    demons.SetStandardDeviations(float(parameters.sigma))
+    demons.SetNumberOfIterations(int(iterations))
+    demons.SetStandardDeviations(float(sigma))
     # Most pixels are far from the boundary and still: their mean change would stop it too early.
     demons.SetMaximumRMSError(0.0)
-    images = (sitk.GetImageFromArray(mask.astype(np.float32)) for mask in (fixed, moving))
+    images = [sitk.GetImageFromArray(mask.astype(np.float32)) for mask in (fixed, moving)]
+    if start is not None:
+        start_xy = np.ascontiguousarray(np.moveaxis(start[::-1], 0, -1))
+        images.append(sitk.GetImageFromArray(start_xy, isVector=True))
     field_xy = sitk.GetArrayFromImage(demons.Execute(*images)).astype(np.float64)
     return np.ascontiguousarray(np.moveaxis(field_xy[..., ::-1], -1, 0))
 
@@ -145,13 +178,19 @@ def _rasterise(here: Contour, there: Contour) -> tuple[BoolArray, BoolArray, Flo
     rows, columns = (np.ceil(both.max(axis=0)) + _MARGIN_PX - low).astype(int) + 1
     masks: list[BoolArray] = []
     for name, contour in (("here", here), ("there", there)):
-        mask = polygon2mask(  # type: ignore[no-untyped-call,unused-ignore]
-            (rows, columns), contour.points_yx - low
-        )
+        mask = raster_of(contour.points_yx, low, (rows, columns))
         if not mask.any():
             raise ParameterError(f"{name} must enclose a pixel centre, got none: pass a larger outline")
         masks.append(mask)
     return masks[0], masks[1], low
+
+
+def raster_of(polygon_yx: FloatArray, low: FloatArray, shape: tuple[int, int]) -> BoolArray:
+    """Mask of a closed polygon on a grid of a shape whose first pixel is at (row, column) `low`."""
+    inside: BoolArray = polygon2mask(  # type: ignore[no-untyped-call,unused-ignore]
+        shape, polygon_yx - low
+    )
+    return inside
 
 
 def _checked(points_yx: FloatArray, low: FloatArray, shape: tuple[int, ...]) -> FloatArray:

@@ -92,11 +92,15 @@ class EdgeGrid:
         ndarray of shape (...) and dtype int
             -1 for what lies deeper than the last layer.
         """
-        beyond = float(self.depth_px) * (self.layers + 1)  # a tiny depth_px would count past any integer
-        layer = np.maximum(np.ceil(np.minimum(depth, beyond) / self.depth_px - 1e-9).astype(np.int64) - 1, 0)
+        layer = self.layer_of(depth)
         turn = np.mod(angle / (2.0 * np.pi), 1.0)
         sector = np.minimum(np.floor(turn * self.sectors).astype(np.int64), self.sectors - 1)
         return np.where(layer < self.layers, layer * self.sectors + sector, -1)
+
+    def layer_of(self, depth: FloatArray) -> IntArray:
+        """Layer at a depth, of the shape of `depth`, in pixels; the number of layers or more if too deep."""
+        beyond = float(self.depth_px) * (self.layers + 1)  # a tiny depth_px would count past any integer
+        return np.maximum(np.ceil(np.minimum(depth, beyond) / self.depth_px - 1e-9).astype(np.int64) - 1, 0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

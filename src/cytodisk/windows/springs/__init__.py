@@ -1,0 +1,1 @@
+"""Edge-based windows whose sides are springs."""
