@@ -3,8 +3,8 @@
 Prints a Markdown table for each parameter, a row a value, and says with which seeds.
 
 * "evenness" of the springs between windows (`spring_windows`), over cells of several kinds, 8 layers × 60
-  sectors: share of windows that hold a part of the cell, in all and in the deepest quarter of the layers;
-  coefficients of variation of area and eccentricity within a layer, median; number of pieces of a window.
+  sectors: share of windows that hold a part of the cell, in all and in the deepest quarter of
+  the layers; coefficients of variation of area and eccentricity within a layer, median; number of pieces of a window.
   Edge-based windows without springs stand above.
 * "line tension" of the edge that springs follow, and the settings of the registration to the first frame, over
   movies of known motion: "in place" is the share of points inside the cell that are in the last frame in the
@@ -80,9 +80,10 @@ def kept(truth: SimulatedMovie, frames: Iterable[LaidFrame]) -> list[float]:
     first, last, measures = None, None, []
     for frame in frames:
         first, last = first or frame, frame
-        shares = [frame.shares.get(name, np.nan) for name in ("folded", "outside")]
+        shares = [frame.shares.get(name, np.nan) for name in ("folded", "carried_outside")]
         measures.append([frame.windows.completeness.mean(), frame.windows.coverage, *shares])
-    assert first is not None and last is not None
+    assert first is not None
+    assert last is not None
     here, there = (windows_at(one, truth.interior_yx[one.frame]) for one in (first, last))
     return [float(((here == there) & (here >= 0)).mean()), *np.mean(measures, axis=0).tolist()]
 

@@ -14,9 +14,12 @@ from cytodisk.runs.compare_windows.run_compare_windows import run_compare_window
 from remeasured import shapes
 
 GRIDS: dict[str, tuple[int, int, tuple[WindowMethod, ...]]] = {
-    "12x60": (12, 60, ("newton", "harmonic", "advection", "edge")),
-    "30x60": (30, 60, ("newton", "edge")),
-    "50x100": (50, 100, ("newton", "edge")),
+    "12x60": (12, 60, ("newton", "edge", "springs")),
+    "30x60": (30, 60, ("newton", "edge", "springs")),
+    "50x100": (50, 100, ("newton", "edge", "springs")),
+}
+MAPS: dict[str, tuple[int, int, tuple[WindowMethod, ...]]] = {
+    "maps_12x60": (12, 60, ("newton", "harmonic", "advection"))
 }
 
 COLUMNS = {"completeness": "complete", "area_cv": "CV of area", "eccentricity_cv": "CV of eccentricity"}

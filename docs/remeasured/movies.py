@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 
 from cytodisk.pages.compared_movie import write_compared_movie
-from cytodisk.runs.compare_windows.compare_parameters import TITLES, CompareMovieParameters
+from cytodisk.runs.compare_windows.compare_parameters import TITLES, CompareMovieParameters, MovieMethod
 from cytodisk.runs.compare_windows.comparison import Comparison
 from cytodisk.runs.compare_windows.run_compare_windows import run_compare_windows
 from remeasured import shapes
@@ -25,7 +25,8 @@ MOVIES: dict[str, tuple[str, str, dict[str, Any]]] = {
         {"channels": ("Rac1",), "frame_interval_s": 1.29},
     ),
 }
-LAYERS, SECTORS = 10, 60
+LAYERS, SECTORS = 10, 60  # about as many sectors as in the paper
+METHODS: tuple[MovieMethod, ...] = ("newton", "harmonic", "edge", "springs", "registered")
 PEAK = 3.0  # times the median displacement: a step at which windows are mistracked
 
 
@@ -35,7 +36,7 @@ def measure(data: Path, work: Path) -> dict[str, Comparison]:
     for name, (masks, signal, more) in MOVIES.items():
         print(name, flush=True)
         out = work / f"movie_{name}"
-        parameters = CompareMovieParameters(layers=LAYERS, sectors=SECTORS, **more)
+        parameters = CompareMovieParameters(layers=LAYERS, sectors=SECTORS, methods=METHODS, **more)
         found[name] = run_compare_windows(
             data / masks, out, parameters=parameters, signal=data / signal, **shapes.again(out)
         )

@@ -13,7 +13,7 @@ from cytodisk.pages.compared_cells import chosen_cells
 from cytodisk.pages.compared_layers import METHOD_STYLES, draw_measure_by_layer, spread_over
 from cytodisk.pages.compared_movie import consistency_by_layer, draw_displacement
 from cytodisk.plot.cell.window_labels import draw_label_image
-from cytodisk.runs.compare_windows.compare_parameters import TITLES, NucleusMethod, WindowMethod
+from cytodisk.runs.compare_windows.compare_parameters import TITLES, MovieMethod, NucleusMethod
 
 METHODS = ("newton", "edge")
 
@@ -35,7 +35,7 @@ def comparison(tmp_path_factory: pytest.TempPathFactory) -> cd.Comparison:
 
 def test_every_method_has_a_name_a_colour_and_a_mark_of_its_own() -> None:
     assert set(TITLES) == set(METHOD_STYLES)
-    for together in (get_args(WindowMethod), get_args(NucleusMethod)):
+    for together in (get_args(MovieMethod), get_args(NucleusMethod)):
         for key in ("color", "marker"):
             assert len({METHOD_STYLES[method][key] for method in together}) == len(together)
 

@@ -28,6 +28,8 @@ _MEASURES: tuple[tuple[str, Callable[[Any], str], str], ...] = (
     ("area_error", "{:.3f}".format, "mean |log area ratio| of a map"),
     ("completeness", _share, "filled windows: with a part of the cell"),
     ("coverage", _share, "of the cells' area lies in windows"),
+    ("folded", _share, "of the cells' area where a registration folds"),
+    ("carried_outside", _share, "of windows' area that it carries out of the cell"),
     ("area_cv", "{:.3f}".format, "spread of window area within a layer"),
     ("eccentricity_cv", "{:.3f}".format, "spread of eccentricity within a layer"),
     ("outside", _share, "of ring points lie outside the cell"),

@@ -31,6 +31,10 @@ METHOD_STYLES: dict[str, dict[str, Any]] = {
     "advection": {"color": "#009E73", "marker": "^", "linestyle": (0, (1.2, 2)), "zorder": 2.3}
     | {"linewidth": 1.0, "markersize": 2.0},
     "edge": {"color": "#D55E00", "marker": "D", "linewidth": 1.0, "markersize": 2.5, "zorder": 2.4},
+    "springs": {"color": "#8C510A", "marker": "d", "linestyle": (0, (6, 1.2, 1.2, 1.2)), "zorder": 2.42}
+    | {"linewidth": 1.1, "markersize": 2.7},
+    "registered": {"color": "#4D4D4D", "marker": "X", "linestyle": (0, (2, 1)), "zorder": 2.35}
+    | {"linewidth": 1.1, "markersize": 2.9},
     "rings": {"color": "#CC79A7", "marker": "v", "linestyle": (0, (4, 1, 1, 1)), "zorder": 2.5}
     | {"linewidth": 1.0, "markersize": 2.5},
     "nucleus-rings": {"color": "#D55E00", "marker": "D", "linewidth": 1.2, "markersize": 3.2, "zorder": 2.2},

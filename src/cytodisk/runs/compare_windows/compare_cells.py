@@ -26,6 +26,7 @@ from cytodisk.windows.grid_parameters import EdgeWindowParameters, RingWindowPar
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.polar_windows import polar_windows
 from cytodisk.windows.ring_windows import ring_windows
+from cytodisk.windows.springs.spring_windows import spring_windows
 
 
 @takes(RunOptions)
@@ -100,6 +101,8 @@ class _Methods(CellMethods):
         mask, chosen = self.found.mask, self.parameters
         if method == "edge":
             return edge_windows(mask, **dict(chosen.part(EdgeWindowParameters))), None
+        if method == "springs":
+            return spring_windows(mask, **dict(chosen.part(EdgeWindowParameters))), None
         if method == "rings":
             return ring_windows(mask, **dict(chosen.part(RingWindowParameters))), None
         disk = map_to_disk(mask, method=method, **dict(chosen.part(MeshParameters)))

@@ -17,7 +17,8 @@ _COLUMNS: tuple[tuple[str, Iterable[str], str, str], ...] = (
         "method",
         _ALL,
         "",
-        "newton (cytodisk's default), newton-triangles, harmonic, advection (u-Unwrap's), edge, or rings; "
+        "newton (cytodisk's default), newton-triangles, harmonic, advection (u-Unwrap's), edge, springs, "
+        "registered (movies), or rings; "
         "with nuclei newton, nucleus-rings (by distance), or interpolated-rings",
     ),
     ("layer", (BY_LAYER,), "", "0 at the edge"),
@@ -34,6 +35,10 @@ _COLUMNS: tuple[tuple[str, Iterable[str], str, str], ...] = (
     ("coverage", (BY_METHOD,), "1", "share of the cells' area that lies in windows"),
     ("lost_px", (BY_METHOD,), "px²", "area of cells in no window or off their map, in all"),
     ("empty_windows", (BY_METHOD,), "", "windows without any part of the cell, in all"),
+    ("folded", (BY_METHOD,), "1", "share of the cell where the field of a registration folds; median over "
+     "a cell's frames, mean over cells"),
+    ("carried_outside", (BY_METHOD,), "1", "share of the windows' area that a registration carries out of "
+     "the cell, likewise"),
     ("completeness", _MEASURED, "1", "share of windows that are filled, that is have a part of the cell; "
      "what was not mapped counts as empty"),
     ("completeness_mapped", _MEASURED, "1", "the same, of what was mapped alone"),

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cytodisk.analysis.activity import ActivityTables, Grid, sample_frames
+from cytodisk.analysis.activity import ActivityTables, Grid, window_arrays
 from cytodisk.analysis.consistency import centroid_displacement, consecutive_correlation
 from cytodisk.analysis.window_measures import measures_by_layer
 from cytodisk.errors import MaskError, ReadError
@@ -20,12 +20,14 @@ from cytodisk.images.signal_files import load_image
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, CompareMovieParameters
 from cytodisk.runs.compare_windows.compare_tables import layer_columns, windows_row
+from cytodisk.runs.compare_windows.laid_frames import lay_frames
 from cytodisk.windows.edge_windows import CellEdge, EdgeGrid
 from cytodisk.windows.polar_windows import polar_windows
 from cytodisk.windows.ring_windows import RingGrid
+from cytodisk.windows.springs.spring_windows import SpringGrid
 
 _SUMMED = ("invalid_maps", "flipped", "lost_px", "empty_windows")
-_MIDDLE = ("area_px", "area_distortion", "angle_distortion", "coverage")
+_MIDDLE = ("area_px", "area_distortion", "angle_distortion", "coverage", "folded", "carried_outside")
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,18 +98,18 @@ def window_grid(followed: FollowedCell) -> Grid:
 
     Returns
     -------
-    PolarGrid, EdgeGrid or RingGrid
+    PolarGrid, EdgeGrid, SpringGrid or RingGrid
     """
     parameters, movie = followed.parameters, followed.movie
     layers, sectors = parameters.layers, parameters.sectors
     if followed.method == "rings":
         return RingGrid(layers, sectors)
-    if followed.method != "edge":
+    if followed.method not in ("edge", "springs"):
         return polar_windows(layers, sectors, parameters.spacing)
     depth = parameters.depth_px
     if depth is None:
         depth = CellEdge.of(movie[int(np.argmax(movie.mapped))]).greatest_depth / layers
-    return EdgeGrid(layers, sectors, depth)
+    return (SpringGrid if followed.method == "springs" else EdgeGrid)(layers, sectors, depth)
 
 
 def usable(masks: Iterable[Any], holes: Holes = "fill") -> int:
@@ -147,12 +149,12 @@ def _sample_frames(
         known = load_image(signal, first + frame)
         return None if isinstance(known, ReadError) else known
 
-    for sampled in sample_frames(movie, grid, image, nan=followed.parameters.nan):
-        tables.put(sampled.frame, sampled.arrays)
-        disk = sampled.disk if followed.method in ON_A_MAP else None
-        frames.append(windows_row(sampled.windows, disk))
-        measures = measures_by_layer(sampled.windows)
-        layers.append(layer_columns(followed.cell, first + sampled.frame, followed.method, measures))
+    for laid in lay_frames(followed.method, movie, grid):
+        tables.put(laid.frame, window_arrays(laid.windows, image(laid.frame), nan=followed.parameters.nan))
+        disk = laid.disk if followed.method in ON_A_MAP else None
+        frames.append(windows_row(laid.windows, disk) | laid.shares)
+        measures = measures_by_layer(laid.windows)
+        layers.append(layer_columns(followed.cell, first + laid.frame, followed.method, measures))
     return tables.dataset(movie, first), frames, layers
 
 

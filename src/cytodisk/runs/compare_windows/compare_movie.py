@@ -17,11 +17,12 @@ import numpy as np
 from cytodisk.errors import CytodiskError
 from cytodisk.files import flushed_later, replacing, temporary_name, writing_to
 from cytodisk.images.tracks import CellTrack, TrackMasks
+from cytodisk.motion.demons import simple_itk
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.map_movie import map_movie
 from cytodisk.motion.tracking_parameters import FollowingParameters
 from cytodisk.runs.compare_windows.compare_frames import FollowedCell, measure_frames, usable
-from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, CompareMovieParameters
+from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, OURS, CompareMovieParameters
 from cytodisk.runs.compare_windows.compare_tables import COMPARED_MOVIE
 from cytodisk.runs.compare_windows.comparison import Comparison, open_comparison, write_summaries
 from cytodisk.runs.executor import Executor
@@ -56,7 +57,8 @@ def compare_opened_movie(
 ) -> Comparison:
     """Follow each cell with the windows of several methods and measure how consistent they are.
 
-    The edge is tracked in the same way for all: edge-based windows have the sectors of the polar ones.
+    The edge is tracked in the same way for most: edge-based windows have the sectors of the polar ones. Those
+    with springs follow the edge by line tension of their own, registered ones by the registration alone.
 
     Parameters
     ----------
@@ -81,6 +83,8 @@ def compare_opened_movie(
     """
     options = RunOptions.of(**settings)
     parameters = parameters.in_pixels(inputs.scale)
+    if "registered" in parameters.methods:
+        simple_itk('method "registered"')
 
     def work(folder: StudyFolder) -> tuple[list[str], list[str]]:
         parts = _parts(inputs, parameters.methods)
@@ -204,8 +208,9 @@ def _map(
 ) -> DiskMovie:
     return map_movie(
         masks,
-        # Windows that are not on a map need its edge alone, which is the same for all methods.
-        method=method if method in ON_A_MAP else "harmonic",
+        # Windows that are not on a map need its edge alone, which is the same for all methods; those that are
+        # carried from the first frame need that frame's default map.
+        method=method if method in ON_A_MAP else OURS if method == "registered" else "harmonic",
         pixel_size_um=inputs.scale.pixel_size_um,
         frame_interval_s=inputs.scale.frame_interval_s,
         folder=folder,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal, Self, TypeAlias, TypeVar, get_args
+from typing import Any, ClassVar, Literal, Self, TypeAlias, TypeVar, get_args
 
 from pydantic import field_validator
 
@@ -18,7 +18,12 @@ from cytodisk.scale_parameters import PixelSizeParameters
 from cytodisk.windows.grid_parameters import EdgeGridParameters, GridParameters
 from cytodisk.windows.rings.nucleus_ring_parameters import InterpolatedRingParameters
 
-WindowMethod: TypeAlias = Literal["newton", "newton-triangles", "harmonic", "advection", "edge", "rings"]
+WindowMethod: TypeAlias = Literal[
+    "newton", "newton-triangles", "harmonic", "advection", "edge", "springs", "rings"
+]
+MovieMethod: TypeAlias = Literal[
+    "newton", "newton-triangles", "harmonic", "advection", "edge", "springs", "registered", "rings"
+]
 NucleusMethod: TypeAlias = Literal["newton", "nucleus-rings", "interpolated-rings"]
 
 Method = TypeVar("Method", bound=str)
@@ -31,6 +36,8 @@ TITLES = {
     "harmonic": "harmonic map",
     "advection": "u-Unwrap's relaxation",
     "edge": "edge-based",
+    "springs": "edge-based with springs",
+    "registered": "registered to the first frame",
     "rings": "rings and wedges",
     "nucleus-rings": "rings by distance",
     "interpolated-rings": "interpolated rings",
@@ -40,9 +47,15 @@ TITLES = {
 _METHODS = (
     "Kinds of windows that are compared: on cytodisk's map (newton), with areas by triangle "
     "(newton-triangles), on the map before relaxation (harmonic), on the paper's map (advection), by "
-    "distance from the edge (edge), around the deepest point (rings)."
+    "distance from the edge (edge), the same evened out by springs (springs), around the deepest point "
+    "(rings)."
+)
+_MOVIE_METHODS = (
+    f"{_METHODS.removesuffix('.')}, or those of the first frame carried to each frame by a nonrigid "
+    "registration of the masks (registered; needs SimpleITK)."
 )
 _WORDS = f"several of {', '.join(get_args(WindowMethod))}"
+_MOVIE_WORDS = f"several of {', '.join(get_args(MovieMethod))}"
 _NUCLEUS_METHODS = (
     "Kinds of windows that are compared: on cytodisk's map of cell and nucleus (newton), rings by the share "
     "of the way from the edge to the nucleus (nucleus-rings), rings interpolated between both outlines "
@@ -74,7 +87,7 @@ class ComparedParameters(EdgeGridParameters):
 
     @field_validator("methods", check_fields=False)
     @classmethod
-    def _once_each(cls, methods: tuple[WindowMethod, ...]) -> tuple[WindowMethod, ...]:
+    def _once_each(cls, methods: tuple[MovieMethod, ...]) -> tuple[MovieMethod, ...]:
         return once_each(methods)
 
     def in_pixels(self, scale: Scale) -> Self:
@@ -101,11 +114,23 @@ class CompareWindowsParameters(
         ("newton", "harmonic", "advection", "edge"), _METHODS, words=_WORDS
     )
 
+    @field_validator("methods", mode="before")
+    @classmethod
+    def _of_single_cells(cls, methods: Any) -> Any:
+        if isinstance(methods, tuple | list) and "registered" in methods:
+            raise ValueError(
+                'may name "registered" for movies only, whose frames are registered to the first one: pass '
+                "movie (--movie) too, or leave it out"
+            )
+        return methods
+
 
 class CompareMovieParameters(ComparedParameters, FollowedCellParameters):
     """What decides the result of `cytodisk compare-windows --movie`, beside the input files."""
 
-    methods: tuple[WindowMethod, ...] = parameter(("newton", "harmonic", "edge"), _METHODS, words=_WORDS)
+    methods: tuple[MovieMethod, ...] = parameter(
+        ("newton", "harmonic", "edge"), _MOVIE_METHODS, words=_MOVIE_WORDS
+    )
 
 
 class CompareNucleiParameters(

@@ -39,7 +39,7 @@ _METHOD = Column(
     pa.string(),
     "",
     "how windows are made: newton (the default map), newton-triangles, harmonic, advection (of the paper), "
-    "edge or rings; with nuclei newton, nucleus-rings or interpolated-rings",
+    "edge, springs, registered (movies) or rings; with nuclei newton, nucleus-rings or interpolated-rings",
 )
 # One row for each cell and method; counts are sums over the frames of a movie.
 _CELLS: Columns = (
@@ -71,6 +71,14 @@ _CELLS: Columns = (
     Column("depth_px", pa.float64(), "px", "depth of an edge-based layer; empty for other methods"),
     SECONDS,
 )
+
+# Beside these in a comparison of movies.
+_MOVIE: Columns = (
+    Column("folded", pa.float64(), "1", "registered: share of the cell where the field folds, median over "
+           "frames"),
+    Column("carried_outside", pa.float64(), "1", "registered: share of the windows' area that the field "
+           "carries out of the cell, median over frames"),
+)  # fmt: skip
 
 # Beside these in a comparison with nuclei.
 _NUCLEUS: Columns = (
@@ -132,7 +140,7 @@ COMPARED_MOVIE = StudyKind(
     "movie comparison",
     "cytodisk compare-windows --movie",
     _READER,
-    _CELLS,
+    (*_CELLS, *_MOVIE),
     {"layers": _LAYERS, "consistency": _CONSISTENCY},
     (*_SUMMARIES, THROUGH_TIME_CSV, *_ACTIVITIES),
 )

@@ -31,7 +31,7 @@ class LaidFrame:
     disk : DiskMap
     windows : WindowsOnCell
     shares : dict of str to float
-        What a registration did, by the name of the column: "folded" and "outside".
+        What a registration did, by the name of the column: "folded" and "carried_outside".
     """
 
     frame: int
@@ -115,5 +115,5 @@ def registered_frames(movie: DiskMovie, grid: PolarGrid, **settings: float) -> I
         disk = movie[registered.frame]
         reference = disk if reference is None else reference
         windows = CarriedWindows(grid, disk, reference, registered.to_reference)
-        shares = {"folded": registered.folded, "outside": registered.outside}
+        shares = {"folded": registered.folded, "carried_outside": registered.outside}
         yield LaidFrame(registered.frame, disk, windows, shares)

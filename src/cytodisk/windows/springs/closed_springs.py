@@ -34,9 +34,7 @@ def relaxed(places: FloatArray, length: float, stiffness: float) -> FloatArray:
     return np.asarray(np.maximum.accumulate(even + smooth))
 
 
-def relaxed_groups(
-    places: FloatArray, joined: BoolArray, length: float, stiffness: float
-) -> FloatArray:
+def relaxed_groups(places: FloatArray, joined: BoolArray, length: float, stiffness: float) -> FloatArray:
     """As `relaxed`, where some neighbours are joined: they are one bead, at the mean of their places.
 
     Parameters
@@ -53,4 +51,4 @@ def relaxed_groups(
     """
     group = np.cumsum(~joined) - 1
     means = np.bincount(group, places) / np.bincount(group)
-    return relaxed(means, length, stiffness)[group]
+    return np.asarray(relaxed(means, length, stiffness)[group])

@@ -4,8 +4,8 @@ from cytodisk.geometry.mask_parameters import HoleParameters
 from cytodisk.parameters import Parameters, parameter
 from cytodisk.windows.grid_parameters import EdgeGridParameters
 
-EVENNESS = 2.0
-LINE_TENSION = 1.0
+EVENNESS = 4.0
+LINE_TENSION = 0.25
 
 
 class EvennessParameters(Parameters):

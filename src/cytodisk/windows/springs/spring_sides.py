@@ -37,7 +37,7 @@ class Sides:
     @property
     def ranks(self) -> IntArray:
         """Number of each side if joined ones count as one, from 0."""
-        return np.cumsum(~self.joined) - 1
+        return np.asarray(np.cumsum(~self.joined) - 1)
 
     @property
     def windows(self) -> IntArray:

@@ -108,7 +108,9 @@ class SpringWindows(EdgeWindows):
         lifted = turn[0] + np.mod(wanted - turn[0], 2.0 * np.pi)
         places = np.roll(np.interp(lifted, turn, border.arc), -first)
         sides = Sides(np.roll(np.arange(sectors), -first), places, np.zeros(sectors, dtype=bool))
-        return cross_borders(CrossedBorder(border, sides), float(self.depth_px), self.layers, self.grid.evenness)
+        return cross_borders(
+            CrossedBorder(border, sides), float(self.depth_px), self.layers, self.grid.evenness
+        )
 
     def windows_of_subpixels(self, pixels_yx: IntArray) -> IntArray:
         """Number of the window that each subpixel of some pixels lies in, shape (P, 16); -1 for none.
