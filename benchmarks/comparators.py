@@ -3,13 +3,13 @@
 Prints a Markdown table for each parameter, a row a value, and says with which seeds.
 
 * "evenness" of the springs between windows (`spring_windows`), over cells of several kinds, 8 layers × 60
-  sectors: share of windows that hold a part of the cell, in all and in the deepest quarter of
-  the layers; coefficients of variation of area and eccentricity within a layer, median; number of pieces of a window.
+  sectors: share of windows that hold a part of the cell, in all and in the deepest quarter of the layers;
+  coefficients of variation of area and eccentricity within a layer, median; number of pieces of a window.
   Edge-based windows without springs stand above.
-* "line tension" of the edge that springs follow, and the settings of the registration to the first frame, over
-  movies of known motion: "in place" is the share of points inside the cell that are in the last frame in the
-  same of 5 × 24 windows as in the first; completeness, coverage, the share of the cell where the field folds,
-  and the share of what is carried that comes to lie outside of the cell are means over frames.
+* "line tension" of the edge that springs follow, and the settings of the registration to the first frame,
+  over movies of known motion: "in place" is the share of points inside the cell that are in the last frame in
+  the same of 5 × 24 windows as in the first; completeness, coverage, the share of the cell where the field
+  folds, and the share of what is carried that comes to lie outside of the cell are means over frames.
 
 The defaults are those with the best figures with `--seeds setting`; `--seeds judging` uses other cells.
 """

@@ -26,7 +26,7 @@ def test_a_cell_that_moves_as_a_whole_comes_from_where_it_was() -> None:
     assert [field.frame for field in fields] == [0, 1, 2, 3]
     inside = np.argwhere(masks[0]).astype(float)
     for step, field in enumerate(fields):
-        there = field.to_reference(inside + [0, 4 * step])
+        there = field.to_reference(inside + np.array([0, 4 * step]))
         assert np.linalg.norm(there - inside, axis=1).max() < 1.0
         assert field.folded == 0.0
         assert field.outside < 0.02

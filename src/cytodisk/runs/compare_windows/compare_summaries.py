@@ -9,7 +9,6 @@ import pandas as pd
 
 _TRIED = ("ok", "no map", "partly")  # what the others are is no cell
 _SPREAD = ("area_cv", "eccentricity_cv")
-_REGISTERED = ("folded", "carried_outside")
 _THROUGH_TIME = ("correlation", "centroid_displacement")
 _WITH_NUCLEI = (
     "outside",
@@ -76,8 +75,9 @@ def method_summary(cells: pd.DataFrame, layers: pd.DataFrame, methods: tuple[str
         of a movie's cell its median over frames; median over cells with quartiles, which are null for one
         cell), coverage (of all mapped cells' area), lost_px, empty_windows,
         completeness over all windows of all cells tried and of those mapped, medians of area_cv and
-        eccentricity_cv over cells and layers, median seconds. In a movie means of folded and carried_outside. With nuclei means over cells of outside,
-        overlap, outer_fifth and nearness, medians of area_error_cytoplasm and area_error_nucleus; quartiles.
+        eccentricity_cv over cells and layers, median seconds. With a registration means over cells of folded
+        and carried_outside. With nuclei means over cells of outside, overlap, outer_fifth and nearness,
+        medians of area_error_cytoplasm and area_error_nucleus; quartiles.
     """
     rows = []
     for method in methods:
@@ -95,9 +95,7 @@ def method_summary(cells: pd.DataFrame, layers: pd.DataFrame, methods: tuple[str
         row["completeness"] = own["completeness"].sum() / (tried * n_layers) if n_layers else 0.0
         row["completeness_mapped"] = own["completeness"].mean()
         row |= {name: own[name].median() for name in _SPREAD}
-        row |= {
-            name: done[name].mean() for name in _REGISTERED if name in cells and cells[name].notna().any()
-        }
+        row |= {name: done[name].mean() for name in _registered(cells)}
         for name in _WITH_NUCLEI if "outer_fifth" in done else ():
             error = name.startswith("area_error")
             row[name] = done[name].median() if error else done[name].mean()
@@ -143,6 +141,11 @@ def movie_summary(consistency: pd.DataFrame, methods: tuple[str, ...]) -> pd.Dat
                 rows.append(row)
     found = pd.DataFrame(rows)
     return found.astype({"layer": "Int64"}) if rows else found
+
+
+def _registered(cells: pd.DataFrame) -> list[str]:
+    """Columns of a registration, if there was one."""
+    return [name for name in ("folded", "carried_outside") if name in cells and cells[name].notna().any()]
 
 
 def _counts(cells: pd.DataFrame, method: str) -> tuple[int, int]:
