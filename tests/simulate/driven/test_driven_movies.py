@@ -1,7 +1,9 @@
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import tifffile
 
 import cytodisk as cd
 from cytodisk.arrays import FloatArray
@@ -120,6 +122,21 @@ def test_the_same_arguments_give_the_same_movie() -> None:
         np.diff(shaken.boundary_yx, axis=0), np.diff(first.boundary_yx, axis=0), atol=1e-9
     )
     assert shaken.masks.shape != first.masks.shape or np.any(shaken.masks != first.masks)
+
+
+def test_files_hold_masks_channels_and_scale(tmp_path: Path) -> None:
+    movie = predicting_movie("white", 0, frames=2, coupling="common driver", **SMALL)
+    masks, signal = movie.write(tmp_path / "some" / "folder")
+    np.testing.assert_array_equal(tifffile.imread(masks) > 0, movie.masks)
+    with tifffile.TiffFile(signal) as file:
+        np.testing.assert_array_equal(file.asarray(), movie.signal)
+        assert file.series[0].axes == "TCYX"
+        words = str(file.ome_metadata)
+    assert all(f'Name="{name}"' in words for name in ("source", "driver"))
+    assert 'PhysicalSizeX="0.16"' in words
+    assert 'TimeIncrement="5.0"' in words
+    with pytest.raises(ParameterError, match="folder must be a path, got int"):
+        movie.write(3)  # type: ignore[arg-type]
 
 
 def test_an_edge_that_would_cross_the_centre_is_refused() -> None:

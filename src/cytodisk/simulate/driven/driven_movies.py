@@ -1,11 +1,14 @@
 """Movies of a cell whose edge moves as series say, and whose channels are as bright as series say."""
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import tifffile
 import xarray as xr
 from scipy.ndimage import map_coordinates, spline_filter
 from scipy.signal import lfilter
@@ -13,7 +16,9 @@ from scipy.spatial import cKDTree
 from scipy.special import expit
 
 from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.checks import is_path
 from cytodisk.errors import ParameterError
+from cytodisk.files import make_folder
 from cytodisk.geometry.polygon import edge_lengths
 from cytodisk.scale import Scale
 from cytodisk.simulate.drawing import half_covered
@@ -82,6 +87,39 @@ class DrivenMovie:
         In pixels per frame, outward positive; NaN in the last frame.
         """
         return swept_velocity(self.boundary_yx)
+
+    def write(self, folder: str | os.PathLike[str]) -> tuple[Path, Path]:
+        """Write masks and signal as a user has them, with the names of the channels, pixel size and interval.
+
+        Parameters
+        ----------
+        folder : path-like
+            Is made if it is not there; files of the same names in it are replaced.
+
+        Returns
+        -------
+        (Path, Path)
+            masks.tif and signal.ome.tif.
+
+        Raises
+        ------
+        ParameterError
+            `folder` is no path.
+        """
+        is_path("folder", folder)
+        make_folder(Path(folder))
+        masks, signal = Path(folder) / "masks.tif", Path(folder) / "signal.ome.tif"
+        tifffile.imwrite(masks, self.masks.astype(np.uint8))
+        metadata: dict[str, Any] = {
+            "axes": "TCYX",
+            "Channel": {"Name": self.signal["channel"].values.tolist()},
+            "TimeIncrement": self.frame_interval_s,
+            "TimeIncrementUnit": "s",
+        }
+        for axis in "XY":
+            metadata |= {f"PhysicalSize{axis}": self.pixel_size_um, f"PhysicalSize{axis}Unit": "µm"}
+        tifffile.imwrite(signal, self.signal.to_numpy(), metadata=metadata, ome=True)
+        return masks, signal
 
 
 @dataclass(frozen=True, eq=False)
