@@ -21,6 +21,7 @@ from cytodisk.runs.population.population_parameters import PopulationParameters
 from cytodisk.runs.population.power.power_parameters import PowerParameters
 from cytodisk.runs.run_options import BatchOptions, MapOptions, RunOptions
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
+from cytodisk.runs.waves.wave_run_parameters import WavesParameters
 from cytodisk.store.spatial.place_parameters import SpatialParameters
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ MODELS: dict[str, type[Parameters]] = {
     "cytodisk map": MapParameters,
     "cytodisk movie": MovieParameters,
     "cytodisk correlate": CorrelateParameters,
+    "cytodisk waves": WavesParameters,
     "cytodisk shapes": ShapeParameters,
     "cytodisk compare-windows": CompareWindowsParameters,
     "cytodisk compare-windows --movie": CompareMovieParameters,

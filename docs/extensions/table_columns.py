@@ -14,6 +14,7 @@ from cytodisk.runs.map.map_kind import MAP
 from cytodisk.runs.movie.movie_kind import MOVIE
 from cytodisk.runs.population.population_kind import POPULATION
 from cytodisk.runs.shapes.shape_tables import SHAPE_STUDY
+from cytodisk.runs.waves.waves_columns import WAVE_TABLES
 from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import Columns
 
@@ -50,6 +51,12 @@ def write_page(app: Sphinx, _config: Any) -> None:
         "Correlations",
         "``cytodisk correlate`` writes these tables into ``correlation/SIGNAL~WITH/``.",
         CORRELATION_TABLES,
+    )
+    lines += run(
+        "Waves",
+        "``cytodisk waves`` writes these tables into ``waves/SIGNAL/``. Speeds are positive towards higher "
+        "sectors, which is clockwise as seen in the image.",
+        WAVE_TABLES,
     )
     lines += run("Shapes", "``cytodisk shapes`` writes this table.", {"shapes": SHAPE_STUDY.cells})
     lines += ["The features follow; ``features.csv`` lists them, too.", "", *features()]

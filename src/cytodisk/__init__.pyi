@@ -117,6 +117,7 @@ from .runs.population.power.power_parameters import PowerParameters as PowerPara
 from .runs.map.run_map import run_map as run_map
 from .runs.movie.run_movie import run_movie as run_movie
 from .runs.shapes.run_shapes import run_shapes as run_shapes
+from .runs.waves.run_waves import run_waves as run_waves
 from .runs.correlate.run_correlate import run_correlate as run_correlate
 from .runs.predict.run_predict import run_predict as run_predict
 from .runs.population.correlations.run_batch_correlate import run_batch_correlate as run_batch_correlate
@@ -127,6 +128,7 @@ from .runs.export.run_export import run_export as run_export
 from .runs.map.map_parameters import MapParameters as MapParameters
 from .runs.movie.movie_parameters import MovieParameters as MovieParameters
 from .runs.shapes.shape_parameters import ShapeParameters as ShapeParameters
+from .runs.waves.wave_run_parameters import WavesParameters as WavesParameters
 from .runs.correlate.correlate_parameters import CorrelateParameters as CorrelateParameters
 from .runs.predict.predict_parameters import PredictParameters as PredictParameters
 from .runs.population.correlations.pool_parameters import BatchCorrelateParameters as BatchCorrelateParameters

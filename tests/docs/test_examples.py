@@ -20,7 +20,9 @@ SLOW = {  # UMAP is compiled, processes are started
     "run_batch",
     "run_batch_correlate",
     "run_correlate",
+    "run_waves",
     "write_pooled_figure",
+    "write_wave_figures",
 }
 SPACES: tuple[ModuleType, ...] = (cd, cd.plot, cd.pages, cd.simulate)
 

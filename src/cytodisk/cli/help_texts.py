@@ -84,6 +84,25 @@ Examples:
 
 Exit code: 0 when done (a cell that cannot be correlated has a row with the reason), 2 if none could be.
 """,
+    "waves": """Do waves run along the edge of cells, or through a signal, and which way?
+
+STUDY is the folder that cytodisk movie wrote. Without --signal the velocity of the edge is looked at; with it
+every layer of a channel. Speeds are positive towards higher sectors, which is clockwise as seen in the image.
+Tables and figures go to STUDY/waves/SIGNAL.
+
+Examples:
+
+  cytodisk waves out/
+
+  cytodisk waves out/ --signal Rac1
+
+  cytodisk waves out/ --signal Rac1 --layer 2 --format pdf,png
+
+  cytodisk waves out/ --frames 0:200 --name early
+
+Exit code: 0 when done (a cell in which waves cannot be looked for has a row with the reason), 2 if there is
+none in which they can.
+""",
     "shapes": """Measure the shape of cells in a hundred features, and order them from plain to complex ones.
 
 MASKS is one mask, a stack of masks, or a label image (each label a cell), or a folder of such files.

@@ -42,6 +42,11 @@ class StudyOfNone(Study):
         """None."""
         return []
 
+    @property
+    def wave_signals(self) -> list[tuple[str, ...]]:
+        """None."""
+        return []
+
 
 @dataclass(frozen=True)
 class StudyOfOne(StudyOfNone):

@@ -18,6 +18,7 @@ from cytodisk.runs.qc_flags import (
     nucleus_jumps,
     prediction_flags,
     stress_flags,
+    wave_flags,
     window_flags,
 )
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
@@ -57,7 +58,12 @@ def qc_flags(study: Study) -> list[QCFlag]:
     >>> cd.qc_flags(study)  # nothing to doubt
     []
     """
-    found = [*run_flags(study), *correlation_flags_of(study), *prediction_flags_of(study)]
+    found = [
+        *run_flags(study),
+        *correlation_flags_of(study),
+        *prediction_flags_of(study),
+        *wave_flags_of(study),
+    ]
     return [*found, *_other_warnings(study, found)]
 
 
@@ -74,6 +80,11 @@ def correlation_flags_of(study: Study) -> list[QCFlag]:
 def prediction_flags_of(study: Study) -> list[QCFlag]:
     """Those of the study's predictions."""
     return [flag for rule in prediction_flags.PREDICTION_RULES for flag in rule(study)]
+
+
+def wave_flags_of(study: Study) -> list[QCFlag]:
+    """Those of the study's waves."""
+    return [flag for rule in _WAVE_RULES for flag in rule(study)]
 
 
 def _other_warnings(study: Study, found: Sequence[QCFlag]) -> Iterator[QCFlag]:
@@ -141,4 +152,9 @@ _CORRELATION_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     correlation_flags.drifting_series,
     geometry_flags.geometry_not_tested,
     correlation_flags.left_out,
+)
+
+_WAVE_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
+    wave_flags.wave_doubt_flags,
+    wave_flags.without_waves,
 )

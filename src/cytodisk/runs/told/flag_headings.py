@@ -36,6 +36,14 @@ PREDICTION_GROUPS = {
 }
 """The same for a command with the flag `--source`."""
 
+WAVE_GROUPS = {
+    "Where waves are looked for": "signal layer cell frames without-frames geometry",
+    "How they are tested": "max-mode frames-per-period periods surrogates seed",
+    "Many movies": "groups compare permutations resume",
+    "Results": "name csv figures format parameters quiet help",
+}
+"""The same for a command with the flag `--layer`."""
+
 POPULATION_GROUPS = {
     "What is compared": "compare channel scalars groups dose dose-scale",
     "What each cell contributes": "summary normalise align",
@@ -66,7 +74,12 @@ def grouped(flags: Sequence[str]) -> list[tuple[str, list[str]]]:
     >>> grouped(["csv", "sectors", "signal", "layers"])
     [('Files', ['signal']), ('Windows', ['layers', 'sectors']), ('Results', ['csv'])]
     """
-    marks = {"with": CORRELATION_GROUPS, "source": PREDICTION_GROUPS, "compare": POPULATION_GROUPS}
+    marks = {
+        "with": CORRELATION_GROUPS,
+        "source": PREDICTION_GROUPS,
+        "layer": WAVE_GROUPS,
+        "compare": POPULATION_GROUPS,
+    }
     groups = next((own for mark, own in marks.items() if mark in flags), GROUPS)
     found: list[tuple[str, list[str]]] = []
     left = list(flags)

@@ -7,6 +7,7 @@ if TYPE_CHECKING:
     from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag
     from cytodisk.store.correlation_store import Correlation
     from cytodisk.store.study import Study
+    from cytodisk.store.waves.waves_store import Waves
 
 MOST_FLAGS = 8
 _MOST_PLACES = 8
@@ -24,6 +25,16 @@ def study_flag_lines(study: "Study", found: "Correlation | None" = None) -> Iter
     yield from flag_lines(shown, f"see {page}", files)
     if found is not None and _places(qc_flags(study)) - _places(shown):
         yield f"flags of other results: {page}"
+
+
+def wave_flag_lines(study: "Study", found: "Waves") -> Iterator[str]:
+    """The QC flags of a study's run, and of its waves those of one signal alone."""
+    from cytodisk.runs.qc_flags.one_of_waves import with_waves
+    from cytodisk.runs.qc_flags.study_flags import run_flags, wave_flags_of
+
+    page = f"cytodisk report {study.path}"
+    flags = [*wave_flags_of(with_waves(study, found)), *run_flags(study)]
+    yield from flag_lines(flags, f"see {page}", file_names(study))
 
 
 def file_names(study: "Study") -> dict[int, str]:
