@@ -38,8 +38,17 @@ _SUMMARIES = {
     "peak_correlation": "peak correlation of {}",
     "lag": "lag of the peak of {}",
     "around_events": "{} less that at any moment",
+    "gain": "gain of {} beyond chance",
+    "gain_score": "score of {}",
+    "waves": "order of waves of {}",
 }
-_SIGNED = ("velocity", "peak_correlation", "lag")  # summaries whose 0 has a meaning of its own
+_SIGNED = (
+    "velocity",
+    "peak_correlation",
+    "lag",
+    "gain",
+    "gain_score",
+)  # summaries whose 0 has a meaning of its own
 _DIRECTIONS = {
     "nucleus": "away from the nucleus",
     "front": "at the front",

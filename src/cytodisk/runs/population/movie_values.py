@@ -10,8 +10,15 @@ from cytodisk.errors import PopulationError
 from cytodisk.runs.correlate.correlate_study import channels_of
 from cytodisk.runs.population.movies.correlation_summaries import at_peak, correlated_channels
 from cytodisk.runs.population.movies.event_summaries import around_onsets
-from cytodisk.runs.population.movies.summary_names import MOVIE_SUMMARIES
+from cytodisk.runs.population.movies.prediction_summaries import gains
+from cytodisk.runs.population.movies.summary_names import (
+    MOVIE_SUMMARIES,
+    OF_CORRELATIONS,
+    OF_PREDICTIONS,
+    OF_WAVES,
+)
 from cytodisk.runs.population.movies.time_summaries import mean_velocity, over_time
+from cytodisk.runs.population.movies.wave_summaries import wave_order
 from cytodisk.store.study import Study
 
 REACH = 10
@@ -42,9 +49,14 @@ def movie_values(
         "mean" or "sd": of each window over time; the sd holds drift and bleaching, too. "velocity": mean
         velocity of the edge by sector. "peak_correlation", "lag": correlation of each window with velocity at
         its peak, and the lag of the peak where p < 0.05, as `cytodisk correlate` found them. "around_events":
-        the signal around onsets of protrusion, by layer and lag, less the same around any moment.
+        the signal around onsets of protrusion, by layer and lag, less the same around any moment. "gain": how
+        much the past of one signal predicts another beyond chance (nat), by layer, as `cytodisk predict`
+        found it; "gain_score": the normal score of its p, to test against 0. "waves": order of waves by layer,
+        as `cytodisk waves` found it.
     channels : sequence of str, optional
-        Without it all of the study; for "peak_correlation" and "lag" all that were correlated.
+        Without it all of the study; for "peak_correlation" and "lag" all that were correlated. For "gain" and
+        "gain_score" names of links, as "Rac1 → velocity", by default all that were tested. For "waves" one
+        signal, by default velocity.
     with_ : str
         For "peak_correlation" and "lag": what the signal was correlated with.
     reach : int
@@ -56,7 +68,8 @@ def movie_values(
         NaN for windows without a value, and for those that have one in fewer than half of the frames.
         `attrs["units"]` has the unit, `attrs["frames"]` the number of frames, where values are over time.
         Then the coordinate area has the mean area of each window. "velocity" has one layer, of compartment
-        "edge".
+        "edge". Values of "gain" and "waves" are the same in all sectors of a layer; of "waves"
+        `attrs["numbers"]` has speed, period and others of the chosen layer.
 
     Raises
     ------
@@ -64,13 +77,15 @@ def movie_values(
         This cell gives nothing; its message is the reason.
     PopulationError
         No cell of the study can: there is no such summary or channel, the study is not that of a movie, or
-        the tables of its correlations are missing (the message has the command to type).
+        the tables of its correlations, predictions or waves are missing (the message has the command to type).
 
     Notes
     -----
     A frame counts if it has a map (status "ok"); gaps are left out. The mean needs 5 frames, the velocity 5
     steps, the sd 10 frames, events 3 protrusions. The correlation at the peak is larger by chance in a short
-    movie: compare movies of about the same length, or pool their curves with `cytodisk correlate BATCH`.
+    movie: compare movies of about the same length, or pool their curves with `cytodisk correlate BATCH`. A
+    gain beyond chance has a mean of 0 where nothing predicts, whatever the length, but most are a little below
+    it and few far above: test "gain_score" against 0, and compare "gain" between conditions.
 
     Examples
     --------
@@ -89,8 +104,12 @@ def movie_values(
         raise PopulationError(f"study {study.path} is not that of a movie: leave summary {summary!r} out")
     if summary == "velocity":
         return mean_velocity(study.activity(cell))
+    if summary in OF_PREDICTIONS:
+        return gains(study, cell, summary, channels)
+    if summary in OF_WAVES:
+        return wave_order(study, cell, channels)
     chosen = _channels(study, channels)
-    if summary in ("peak_correlation", "lag"):
+    if summary in OF_CORRELATIONS:
         if channels is None:
             chosen = correlated_channels(study, chosen, with_)
         return at_peak(study, cell, summary, chosen, with_)

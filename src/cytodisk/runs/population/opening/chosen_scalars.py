@@ -9,11 +9,12 @@ import pandas as pd
 
 from cytodisk.errors import PopulationError
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT
+from cytodisk.runs.population.movies.wave_summaries import WAVE_UNITS
 from cytodisk.runs.population.opening.disk_directions import TURN
 from cytodisk.runs.population.opening.joined_cells import FRAMES, PLACES
 from cytodisk.store.nuclei.summary_columns import PERINUCLEAR_SHARE, PERIPHERAL_SHARE, column_of
 
-_DEFAULT = ("area", "nucleus_area", "nucleus_polarity")
+_DEFAULT = ("area", "nucleus_area", "nucleus_polarity", *WAVE_UNITS)
 _DEFAULT_OF_CHANNEL = (PERINUCLEAR_SHARE, PERIPHERAL_SHARE)
 _NO_SCALARS = (*PLACES, CONDITION, EXPERIMENT, FRAMES, TURN, "centroid_y", "centroid_x", "day", "dose")
 _DIRECTIONS = ("disk_direction_", "nucleus_direction", "signal_direction_")
@@ -32,7 +33,8 @@ def chosen_scalars(
         Of the population.
     scalars : sequence of str, optional
         By default few, because all are corrected together: area; with nuclei area and polarity of the nucleus
-        and, of each channel, its share of signal around the nucleus and at the membrane.
+        and, of each channel, its share of signal around the nucleus and at the membrane; for the summary
+        "waves" their numbers.
 
     Returns
     -------

@@ -11,6 +11,7 @@ import xarray as xr
 
 from cytodisk.errors import NoValuesError, PopulationError
 from cytodisk.runs.population.movie_values import movie_values
+from cytodisk.runs.population.movies.wave_summaries import NUMBERS
 from cytodisk.runs.population.opening.disk_directions import movie_directions
 from cytodisk.runs.population.opening.found_studies import FoundStudy
 from cytodisk.runs.population.opening.joined_cells import FRAMES, PLACES, with_columns
@@ -115,7 +116,8 @@ def read_movie_values(
             f"no cell has values for {summary!r} ({left_out.rows[-1]['reason']}): choose another summary"
         )
     chosen = cells.iloc[kept].reset_index(drop=True)
-    chosen = with_columns(chosen, pd.DataFrame(directions, index=chosen.index))
+    numbers = pd.DataFrame([part.attrs.get(NUMBERS, {}) for part in parts], index=chosen.index)
+    chosen = with_columns(chosen, pd.DataFrame(directions, index=chosen.index).join(numbers))
     values, areas = _stacked(parts, chosen)
     deep = median_of_cells(np.concatenate(depths))
     if values.sizes["layer"] == len(deep):

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 
 import pandas as pd
 
+from cytodisk.runs.population.movies.summary_names import OF_CORRELATIONS, OF_PREDICTIONS, OF_WAVES
 from cytodisk.runs.population.opening.chosen_scalars import chosen_scalars
 from cytodisk.runs.population.opening.common_channels import chosen_channels
 from cytodisk.runs.population.opening.found_studies import FoundStudy
 from cytodisk.runs.population.opening.movie_cells import read_movie_values
 from cytodisk.runs.population.opening.opened_cells import OpenedCells, Wanted
 
-_WITHOUT_CHANNELS = ("velocity",)
-_OF_SOME_CHANNELS = ("peak_correlation", "lag")  # those that were correlated
+_WITHOUT_CHANNELS = ("velocity", *OF_PREDICTIONS, *OF_WAVES)  # or with names that are none
 
 
 def movie_population(
@@ -40,7 +40,7 @@ def movie_population(
     """
     channels = wanted.channels
     if wanted.summary not in _WITHOUT_CHANNELS and not (
-        channels is None and wanted.summary in _OF_SOME_CHANNELS
+        channels is None and wanted.summary in OF_CORRELATIONS
     ):
         channels = chosen_channels(studies, channels)
     values, areas, cells = read_movie_values(

@@ -13,6 +13,7 @@ from cytodisk.errors import PopulationError, PopulationWarning
 from cytodisk.population.excluded_cells import EXCLUDED, excluded_text
 from cytodisk.population.population import Population
 from cytodisk.runs.population.movies.summary_names import MOVIE_SUMMARIES
+from cytodisk.runs.population.movies.wave_summaries import WAVE_UNITS
 from cytodisk.runs.population.opening.alike_settings import check_alike, common_scale
 from cytodisk.runs.population.opening.cell_names import cell_names
 from cytodisk.runs.population.opening.disk_directions import direction_units
@@ -50,16 +51,19 @@ def open_population(
         What `cytodisk batch`, `map`, `movie` or `shapes` wrote; a folder that holds such studies side by
         side; or several of these.
     summary : str
-        For movies: what a cell contributes, one of "mean", "sd", "velocity", "peak_correlation", "lag" and
-        "around_events". For images their "mean".
+        For movies: what a cell contributes, one of "mean", "sd", "velocity", "peak_correlation", "lag",
+        "around_events", "gain", "gain_score" and "waves"; see `cytodisk population --help`. For images their
+        "mean".
     channels : sequence of str, optional
-        By default all; then every study must have the same.
+        By default all; then every study must have the same. For "gain" links, as "Rac1 → velocity"; for
+        "waves" one signal, by default velocity.
     groups : path-like, optional
         Table of groups: which condition and experiment each cell is of. Its columns take the place of those
         that studies have.
     scalars : sequence of str, optional
         Columns of numbers that are compared beside the windows. By default the area; with nuclei their area
-        and polarity and shares of the signal; of `cytodisk shapes` all features and the complexity.
+        and polarity and shares of the signal; for "waves" their numbers; of `cytodisk shapes` all features
+        and the complexity.
 
     Returns
     -------
@@ -120,7 +124,8 @@ def open_population(
     _refuse_few(found.cells, left_out)
     notes += found.cells.attrs.get(NOTES, [])
     scale = common_scale(studies)
-    attrs["units"] = attrs["units"] | direction_units([str(name) for name in found.cells])
+    of_waves = {name: unit for name, unit in WAVE_UNITS.items() if name in found.cells}
+    attrs["units"] = attrs["units"] | direction_units([str(name) for name in found.cells]) | of_waves
     found.cells.attrs = attrs | scale | {EXCLUDED: excluded_text(left_out.rows), NOTES: notes}
     if found.values is not None:
         found.values.attrs |= scale | {"summary": summary}
