@@ -27,8 +27,8 @@ import xarray as xr
 
 import cytodisk as cd
 from cytodisk.runs.population.correlations.peak_words import LEVEL, strongest
-from cytodisk.runs.population.correlations.pool_parameters import PoolParameters
 from cytodisk.runs.population.correlations.pooled_curves import pool_curves
+from cytodisk.runs.population.pooling.pool_parameters import PoolParameters
 
 NAMES, LAG, MAX_LAG = ("signal", "velocity"), 3, 8
 BETWEEN = 6  # experiments of each of two conditions

@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 
 from cytodisk.pages.population.pooled_page import pooled_page, write_pooled_figure
 from cytodisk.plot.style import SINGLE_COLUMN_MM
-from cytodisk.runs.population.correlations.pool_parameters import PoolParameters
 from cytodisk.runs.population.correlations.pooled_columns import POOLED_TABLES
 from cytodisk.runs.population.correlations.pooled_curves import pool_curves
+from cytodisk.runs.population.pooling.pool_parameters import PoolParameters
 from cytodisk.store.correlation_store import write_correlation
 from cytodisk.store.populations.pooled_correlation import PooledCorrelation
 

@@ -11,7 +11,8 @@ from cytodisk.cli.options import Figures, Given, MovieStudyOrBatch, Quiet, with_
 from cytodisk.cli.report.given_folder import is_batch
 from cytodisk.cli.report.report_command import opened
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
-from cytodisk.runs.population.correlations.pool_parameters import BatchCorrelateParameters, PoolOptions
+from cytodisk.runs.population.correlations.batch_correlate_parameters import BatchCorrelateParameters
+from cytodisk.runs.population.pooling.pool_parameters import PoolOptions
 from cytodisk.runs.run_options import FigureOptions, TableOptions
 from cytodisk.runs.told.correlation_words import (
     correlation_lines,

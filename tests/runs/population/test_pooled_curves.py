@@ -6,10 +6,10 @@ import pytest
 
 from cytodisk.errors import PopulationError
 from cytodisk.runs.population.correlations.curve_population import curve_population
-from cytodisk.runs.population.correlations.pool_parameters import PoolParameters
 from cytodisk.runs.population.correlations.pooled_curves import pool_curves
 from cytodisk.runs.population.opening.found_studies import FoundStudy
 from cytodisk.runs.population.pooling.batch_movies import check_intervals
+from cytodisk.runs.population.pooling.pool_parameters import PoolParameters
 from cytodisk.runs.population.pooling.pooled_population import Pooled, conditions_compared
 
 NAMES = ("Rac1", "velocity")

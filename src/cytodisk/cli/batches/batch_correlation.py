@@ -13,7 +13,7 @@ from cytodisk.runs.told.speed_words import PERCENT
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from cytodisk.runs.population.correlations.pool_parameters import BatchCorrelateParameters
+    from cytodisk.runs.population.correlations.batch_correlate_parameters import BatchCorrelateParameters
     from cytodisk.store.populations.pooled_correlation import PooledCorrelation
 
 _STOPPED = "Stopped; the movies that are done keep their correlations: run it again with --resume."

@@ -42,13 +42,7 @@ _SUMMARIES = {
     "gain_score": "score of {}",
     "waves": "order of waves of {}",
 }
-_SIGNED = (
-    "velocity",
-    "peak_correlation",
-    "lag",
-    "gain",
-    "gain_score",
-)  # summaries whose 0 has a meaning of its own
+_SIGNED = ("velocity", "peak_correlation", "lag", "gain", "gain_score")  # whose 0 has a meaning of its own
 _DIRECTIONS = {
     "nucleus": "away from the nucleus",
     "front": "at the front",

@@ -51,8 +51,8 @@ def movie_values(
         its peak, and the lag of the peak where p < 0.05, as `cytodisk correlate` found them. "around_events":
         the signal around onsets of protrusion, by layer and lag, less the same around any moment. "gain": how
         much the past of one signal predicts another beyond chance (nat), by layer, as `cytodisk predict`
-        found it; "gain_score": the normal score of its p, to test against 0. "waves": order of waves by layer,
-        as `cytodisk waves` found it.
+        found it; "gain_score": the normal score of its p, to test against 0. "waves": order of waves by
+        layer, as `cytodisk waves` found it.
     channels : sequence of str, optional
         Without it all of the study; for "peak_correlation" and "lag" all that were correlated. For "gain" and
         "gain_score" names of links, as "Rac1 → velocity", by default all that were tested. For "waves" one
@@ -77,15 +77,16 @@ def movie_values(
         This cell gives nothing; its message is the reason.
     PopulationError
         No cell of the study can: there is no such summary or channel, the study is not that of a movie, or
-        the tables of its correlations, predictions or waves are missing (the message has the command to type).
+        the tables of its correlations, predictions or waves are missing (the message has the command to
+        type).
 
     Notes
     -----
     A frame counts if it has a map (status "ok"); gaps are left out. The mean needs 5 frames, the velocity 5
     steps, the sd 10 frames, events 3 protrusions. The correlation at the peak is larger by chance in a short
     movie: compare movies of about the same length, or pool their curves with `cytodisk correlate BATCH`. A
-    gain beyond chance has a mean of 0 where nothing predicts, whatever the length, but most are a little below
-    it and few far above: test "gain_score" against 0, and compare "gain" between conditions.
+    gain beyond chance has a mean of 0 where nothing predicts, whatever the length, but most are a little
+    below it and few far above: test "gain_score" against 0, and compare "gain" between conditions.
 
     Examples
     --------

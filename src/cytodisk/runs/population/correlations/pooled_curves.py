@@ -13,7 +13,7 @@ from cytodisk.runs.population.correlations.peak_words import (
     peak_sentences,
     strongest,
 )
-from cytodisk.runs.population.correlations.pool_parameters import PoolParameters
+from cytodisk.runs.population.pooling.pool_parameters import PoolParameters
 from cytodisk.runs.population.pooling.pooled_population import TABLES, Pool, Pooled
 
 _PLACE = ("layer", "lag")

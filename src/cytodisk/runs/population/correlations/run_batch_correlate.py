@@ -12,12 +12,8 @@ from cytodisk.errors import ParameterError, PopulationError
 from cytodisk.population.group_columns import CONDITION
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.correlate.correlate_study import channels_of, correlate_study
+from cytodisk.runs.population.correlations.batch_correlate_parameters import BatchCorrelateParameters
 from cytodisk.runs.population.correlations.common_lag import common_lag
-from cytodisk.runs.population.correlations.pool_parameters import (
-    BatchCorrelateParameters,
-    PoolOptions,
-    PoolParameters,
-)
 from cytodisk.runs.population.correlations.pooled_columns import POOLED_TABLES
 from cytodisk.runs.population.correlations.pooled_curves import pool_curves
 from cytodisk.runs.population.correlations.study_curves import cells_of, curves_of, kept
@@ -30,6 +26,7 @@ from cytodisk.runs.population.pooling.movie_by_movie import (
     table_of_studies,
     with_groups_of,
 )
+from cytodisk.runs.population.pooling.pool_parameters import PoolOptions, PoolParameters
 from cytodisk.runs.population.pooling.pooled_population import conditions_compared
 from cytodisk.runs.run_options import Progress
 from cytodisk.store.correlation_store import write_correlation

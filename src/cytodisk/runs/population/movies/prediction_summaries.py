@@ -1,4 +1,4 @@
-"""How much the past of one signal predicts another in a movie's cell: from the tables of `cytodisk predict`."""
+"""How much the past of one signal predicts another in a movie's cell, as `cytodisk predict` found it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Waves of a movie's cell: order by layer and numbers of the chosen layer, from the tables of `cytodisk waves`."""
+"""Waves of a movie's cell as `cytodisk waves` found them: order by layer, numbers of the chosen layer."""
 
 from __future__ import annotations
 
@@ -90,8 +90,8 @@ def numbers_of(cells: pd.DataFrame) -> pd.DataFrame:
     -------
     DataFrame
         wave_score, the normal score of p, with a mean of 0 where there is no wave; wave_order;
-        wave_speed_um_s and wave_direction without their sign; wave_period_s and wave_persistence_s. All but the
-        first two are NaN where p is 0.05 or more.
+        wave_speed_um_s and wave_direction without their sign; wave_period_s and wave_persistence_s. All but
+        the first two are NaN where p is 0.05 or more.
     """
     p = cells["p"].to_numpy(np.float64)
     table: dict[str, Any] = {

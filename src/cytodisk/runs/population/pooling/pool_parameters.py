@@ -1,13 +1,12 @@
-"""Parameters of `cytodisk correlate` on a batch folder."""
+"""Parameters of commands that pool the movies of a batch."""
 
 from cytodisk.parameters import parameter
 from cytodisk.population.comparison_parameters import PermutationParameters
-from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.run_options import TableOptions
 
 
 class PoolParameters(PermutationParameters):
-    """How curves of many cells are pooled and tested."""
+    """How numbers of many cells are pooled and tested."""
 
     compare: tuple[str, ...] = parameter(
         (),
@@ -17,13 +16,9 @@ class PoolParameters(PermutationParameters):
     )
 
 
-class BatchCorrelateParameters(CorrelateParameters, PoolParameters):
-    """What decides the result of `cytodisk correlate` on a batch folder."""
-
-
 class PoolOptions(TableOptions):
-    """How the studies of a batch are correlated."""
+    """How the studies of a batch are gone through."""
 
     resume: bool = parameter(
-        False, "Keep the correlations that are there with the same settings, and do the others."
+        False, "Keep the results of movies that are there with the same settings, and do the others."
     )

@@ -1,0 +1,1 @@
+"""Predictions of many movies, pooled over cells and experiments."""

@@ -1,0 +1,85 @@
+"""Pool gains over experiments, test their scores against 0, and compare conditions."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+from cytodisk.population.group_columns import CONDITION
+from cytodisk.runs.population.movies.prediction_summaries import with_link_names
+from cytodisk.runs.population.pooling.number_population import number_population
+from cytodisk.runs.population.pooling.pool_parameters import PoolParameters
+from cytodisk.runs.population.pooling.pooled_population import TABLES, Pool, Pooled
+from cytodisk.runs.population.predictions.gain_words import difference_sentences, link_sentences
+
+GAINS = {"raw": "gain_excess", "partial": "gain_excess_partial"}
+"""Kinds of gain, and their column: as measured, and with what geometry alone would give regressed out."""
+
+SCORES = {"raw": "score", "partial": "score_partial"}
+"""Columns of the normal scores of their p."""
+
+_PLACE = ("channel", "layer")
+_NAMES = ["source", "target"]
+
+
+def pool_gains(links: pd.DataFrame, cells: pd.DataFrame, options: PoolParameters) -> Pooled:
+    """Mean gain of each link, layer and condition over experiments, and what chance would give.
+
+    Parameters
+    ----------
+    links : DataFrame
+        input, cell, source, target, layer and the columns of `GAINS` and `SCORES`.
+    cells : DataFrame
+        input, cell, condition and experiment of the cells that are pooled.
+    options : PoolParameters
+
+    Returns
+    -------
+    Pooled
+        An experiment counts once, whatever the number of its cells. p and p_fwer against 0 are those of the
+        mean score, of all links and layers together; those between conditions are of the gains.
+
+    Raises
+    ------
+    PopulationError
+        A condition to compare is not there.
+    """
+    named = with_link_names(links)
+    found = Pooled()
+    parts: dict[str, list[pd.DataFrame]] = {name: [] for name in TABLES}
+    for kind, gain in GAINS.items():
+        population = number_population(named, cells, _links(named), gain)
+        if population is None:
+            continue
+        pool = Pool(population, options.compare, options, _PLACE, "gain_excess").pooled()
+        scored = number_population(named, cells, _links(named), SCORES[kind])
+        if scored is not None:
+            scores = Pool(scored, options.compare, options, _PLACE, "score").pooled()
+            pool.tables["pooled"] = _with_scores(pool.tables["pooled"], scores.tables["pooled"])
+        if kind == "raw":  # the others have the same cells, or fewer
+            found.sentences += pool.sentences
+        found.warnings += [warning | {"curve": kind} for warning in pool.warnings]
+        for name, table in pool.tables.items():
+            if len(table):
+                parts[name].append(_with_names(table, named).assign(curve=kind))
+    for name, tables in parts.items():
+        found.tables[name] = pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
+    found.sentences += link_sentences(found.tables["pooled"])
+    found.sentences += difference_sentences(found.tables["comparisons"])
+    return found
+
+
+def _links(named: pd.DataFrame) -> list[str]:
+    return list(named["channel"].drop_duplicates())
+
+
+def _with_names(table: pd.DataFrame, named: pd.DataFrame) -> pd.DataFrame:
+    """The table with source and target in the place of the channel."""
+    names = named[["channel", *_NAMES]].drop_duplicates()
+    return table.merge(names, on="channel", how="left").drop(columns="channel")
+
+
+def _with_scores(gains: pd.DataFrame, scores: pd.DataFrame) -> pd.DataFrame:
+    """The table of gains with mean scores and their tests."""
+    keys = [CONDITION, *_PLACE]
+    tested = scores[[*keys, "score", "p", "p_fwer", "smallest_p"]]
+    return gains.drop(columns=["p", "p_fwer", "smallest_p"]).merge(tested, on=keys, how="left")
