@@ -63,8 +63,8 @@ def pool_gains(links: pd.DataFrame, cells: pd.DataFrame, options: PoolParameters
                 parts[name].append(_with_names(table, named).assign(curve=kind))
     for name, tables in parts.items():
         found.tables[name] = pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
-    found.sentences += link_sentences(found.tables["pooled"])
-    found.sentences += difference_sentences(found.tables["comparisons"])
+    said = [*link_sentences(found.tables["pooled"]), *difference_sentences(found.tables["comparisons"])]
+    found.sentences = [*said, *found.sentences]
     return found
 
 

@@ -1,0 +1,1 @@
+"""Waves of many movies, pooled over cells and experiments."""
