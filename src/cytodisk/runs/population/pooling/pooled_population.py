@@ -56,8 +56,11 @@ class Pool:
         Name of the column of means.
     back : callable
         Turns means and the ends of their intervals into what tables hold; by default they are it.
-    zero : sequence of str or None
-        Channels whose mean is tested against 0, together; None for all.
+    zero, between : sequence of str or None
+        Channels whose mean is tested against 0, and those that are compared between conditions, each
+        together; None for all.
+    scores : Population or None
+        Of the same channels and layers, whose mean is tested against 0 in the place of that of the numbers.
     """
 
     population: Population
@@ -67,6 +70,8 @@ class Pool:
     value: str
     back: Callable[[xr.DataArray], xr.DataArray] = lambda mean: mean
     zero: Sequence[str] | None = None
+    between: Sequence[str] | None = None
+    scores: Population | None = None
 
     def pooled(self) -> Pooled:
         """Pool, and test.
@@ -121,30 +126,43 @@ class Pool:
             "n_cells": atlas["n_cells"],
             "n_experiments": atlas["n_experiments"],
         }
+        if self.scores is not None:
+            own = self.scores.select((self.scores.cells[CONDITION] == condition).to_numpy())
+            arrays["score"] = own.atlas().sel(condition=condition, drop=True)["mean"]
+        tested_ones = self._chosen(self.zero)
         try:
-            tested = compare_with_zero(own, condition, channel=self._tested, **self._chance)
+            tested = compare_with_zero(own, condition, channel=tested_ones, **self._chance)
         except PopulationError as error:
             found.sentences.append(f"{condition} is not tested against 0: {error}")
             return self._table(arrays).assign(condition=condition)
         found.sentences.append(f"{condition} against 0: {tested.sentences[0]}")
-        return self._table(arrays, tested.windows, tested.smallest_p).assign(condition=condition)
+        windows = self._with_channel(tested.windows, tested_ones)
+        return self._table(arrays, windows, tested.smallest_p).assign(condition=condition)
 
-    @property
-    def _tested(self) -> list[str]:
-        return list(self.population.channels if self.zero is None else self.zero)
+    def _chosen(self, names: Sequence[str] | None) -> list[str]:
+        there = self.population.channels
+        return [name for name in there if names is None or name in names]
+
+    @staticmethod
+    def _with_channel(windows: xr.Dataset, channels: list[str]) -> xr.Dataset:
+        """What a test found, by channel also where it was of one."""
+        if "channel" in windows.dims:
+            return windows
+        return windows.drop_vars("channel", errors="ignore").expand_dims(channel=channels)
 
     def _compared(self, control: str, other: str, found: Pooled) -> pd.DataFrame:
         """Difference of two conditions."""
+        compared = self._chosen(self.between)
         try:
-            tested = compare_conditions(self.population, control, other, **self._chance)
+            tested = compare_conditions(self.population, control, other, channel=compared, **self._chance)
         except PopulationError as error:
             found.sentences.append(f"{other} is not compared with {control}: {error}")
             return pd.DataFrame()
         found.sentences.append(f"{other} against {control}: {' '.join(tested.sentences[:2])}")
         found.warnings += [asdict(one) | {"condition": other, "control": control} for one in tested.warnings]
         names = ("difference", "difference_low", "difference_high", "n_control", "n_treated")
-        arrays = {name: tested.windows[name] for name in names}
-        table = self._table(arrays, tested.windows, tested.smallest_p)
+        windows = self._with_channel(tested.windows, compared)
+        table = self._table({name: windows[name] for name in names}, windows, tested.smallest_p)
         return table.assign(condition=other, control=control)
 
     def _table(
@@ -165,8 +183,6 @@ class Pool:
     def _placed(self, array: xr.DataArray) -> xr.DataArray:
         """The array along the dims of the tables, in the population's order."""
         plain = array.drop_vars("compartment", errors="ignore")
-        if "channel" not in plain.dims:  # tests of a single channel drop it
-            plain = plain.drop_vars("channel", errors="ignore").expand_dims(channel=self._tested)
         single = {str(name): 0 for name in plain.dims if name not in self.place}
         placed = plain.isel(single, drop=True)
         if "channel" in self.place:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pandas as pd
 
-from cytodisk.population.group_columns import CONDITION
 from cytodisk.runs.population.movies.prediction_summaries import with_link_names
 from cytodisk.runs.population.pooling.number_population import number_population
 from cytodisk.runs.population.pooling.pool_parameters import PoolParameters
@@ -50,11 +49,8 @@ def pool_gains(links: pd.DataFrame, cells: pd.DataFrame, options: PoolParameters
         population = number_population(named, cells, _links(named), gain)
         if population is None:
             continue
-        pool = Pool(population, options.compare, options, _PLACE, "gain_excess").pooled()
-        scored = number_population(named, cells, _links(named), SCORES[kind])
-        if scored is not None:
-            scores = Pool(scored, options.compare, options, _PLACE, "score").pooled()
-            pool.tables["pooled"] = _with_scores(pool.tables["pooled"], scores.tables["pooled"])
+        scores = number_population(named, cells, _links(named), SCORES[kind])
+        pool = Pool(population, options.compare, options, _PLACE, "gain_excess", scores=scores).pooled()
         if kind == "raw":  # the others have the same cells, or fewer
             found.sentences += pool.sentences
         found.warnings += [warning | {"curve": kind} for warning in pool.warnings]
@@ -76,10 +72,3 @@ def _with_names(table: pd.DataFrame, named: pd.DataFrame) -> pd.DataFrame:
     """The table with source and target in the place of the channel."""
     names = named[["channel", *_NAMES]].drop_duplicates()
     return table.merge(names, on="channel", how="left").drop(columns="channel")
-
-
-def _with_scores(gains: pd.DataFrame, scores: pd.DataFrame) -> pd.DataFrame:
-    """The table of gains with mean scores and their tests."""
-    keys = [CONDITION, *_PLACE]
-    tested = scores[[*keys, "score", "p", "p_fwer", "smallest_p"]]
-    return gains.drop(columns=["p", "p_fwer", "smallest_p"]).merge(tested, on=keys, how="left")

@@ -33,16 +33,12 @@ def wave_numbers(cells: pd.DataFrame, layers: pd.DataFrame) -> pd.DataFrame:
     """
     done = cells[cells["status"] == "ok"]
     chosen = numbers_of(done).assign(cell=done["cell"], layer=done["layer"].fillna(0).astype(int))
-    surrogates = (
-        layers["cell"].map(cells.set_index("cell")["surrogates"]).to_numpy(np.float64, na_value=np.nan)
-    )
+    surrogates = layers["cell"].map(cells.set_index("cell")["surrogates"]).astype(np.float64)
     of_layers = pd.DataFrame(
         {
             "cell": layers["cell"],
             "layer": layers["layer"].fillna(0).astype(int),
-            SCORE: normal_score(
-                layers["p"].to_numpy(np.float64), surrogates.to_numpy(np.float64, na_value=np.nan)
-            ),
+            SCORE: normal_score(layers["p"].to_numpy(np.float64), surrogates.to_numpy()),
             ORDER: layers["order"].to_numpy(np.float64),
         }
     )
@@ -67,7 +63,7 @@ def pool_waves(numbers: pd.DataFrame, cells: pd.DataFrame, options: PoolParamete
     -------
     Pooled
         An experiment counts once, whatever the number of its cells. Against 0 the score is tested, of all
-        layers together; between conditions all numbers are, together.
+        layers together; between conditions all other numbers are, together.
 
     Raises
     ------
@@ -77,7 +73,8 @@ def pool_waves(numbers: pd.DataFrame, cells: pd.DataFrame, options: PoolParamete
     population = number_population(numbers, cells[[*KEYS, "condition", "experiment"]], [*WAVE_UNITS], "value")
     if population is None:
         return Pooled(tables={name: pd.DataFrame() for name in TABLES})
-    found = Pool(population, options.compare, options, _PLACE, "mean", zero=(SCORE,)).pooled()
+    others = [name for name in WAVE_UNITS if name != SCORE]  # p is smaller in longer movies
+    found = Pool(population, options.compare, options, _PLACE, "mean", zero=[SCORE], between=others).pooled()
     for name, table in found.tables.items():
         found.tables[name] = _tidy(table)
     said = wave_sentences(found.tables["pooled"], cells)

@@ -117,6 +117,7 @@ def _difference(name: str, control: str, rows: pd.DataFrame) -> str:
         return f"Whether {name} differs from {control} cannot be told: p is {best:.2g} at best{corrected}."
     different = rows[rows["p_holm"] <= LEVEL].sort_values("p_holm", kind="stable")
     if len(different):
+        different = different.drop_duplicates("number")  # the table has all layers
         parts = [_size(row, name, control) for _, row in different.iterrows()]
         return f"{name} differs from {control}{corrected}: {'; '.join(parts)}."
     most: Any = rows.iloc[int(rows["p_holm"].to_numpy().argmin())]
