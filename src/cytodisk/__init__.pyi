@@ -121,6 +121,7 @@ from .runs.waves.run_waves import run_waves as run_waves
 from .runs.correlate.run_correlate import run_correlate as run_correlate
 from .runs.predict.run_predict import run_predict as run_predict
 from .runs.population.correlations.run_batch_correlate import run_batch_correlate as run_batch_correlate
+from .runs.population.predictions.run_batch_predict import run_batch_predict as run_batch_predict
 from .runs.compare_windows.run_compare_windows import run_compare_windows as run_compare_windows
 from .runs.batch.run_batch import run_batch as run_batch
 from .runs.population.run_population import run_population as run_population
@@ -150,6 +151,8 @@ from .store.study import open_study as open_study
 from .store.study import Study as Study
 from .store.populations.pooled_correlation import open_pooled_correlation as open_pooled_correlation
 from .store.populations.pooled_correlation import PooledCorrelation as PooledCorrelation
+from .store.populations.pooled_prediction import open_pooled_prediction as open_pooled_prediction
+from .store.populations.pooled_prediction import PooledPrediction as PooledPrediction
 from .runs.compare_windows.comparison import open_comparison as open_comparison
 from .runs.compare_windows.comparison import Comparison as Comparison
 from .runs.shapes.shape_tables import open_shapes as open_shapes

@@ -1,9 +1,11 @@
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 import tifffile
 import xarray as xr
+from scipy.stats import norm
 
 from cytodisk import simulate
 from cytodisk.analysis.events import edge_events
@@ -13,7 +15,13 @@ from cytodisk.runs.movie.run_movie import run_movie
 from cytodisk.runs.population.movie_values import MOVIE_SUMMARIES, movie_values
 from cytodisk.runs.population.movies.event_summaries import around_onsets
 from cytodisk.runs.population.movies.time_summaries import mean_velocity, over_time
+from cytodisk.runs.predict.prediction_columns import PREDICTION_TABLES
+from cytodisk.store.predictions.prediction_store import write_prediction
 from cytodisk.store.study import Study
+from cytodisk.store.tables import Column
+from cytodisk.store.waves.waves_store import write_waves
+
+_COLUMNS: dict[str, tuple[Column, ...]] = {"cells": (), "layers": ()}
 
 
 @pytest.fixture(scope="module")
@@ -132,4 +140,44 @@ def test_what_cannot_be_had_says_what_to_type(study: Study, tmp_path: Path) -> N
         movie_values(study, 0, "mean", channels=["Rac1"])
     with pytest.raises(PopulationError, match="summary must be one of mean, sd"):
         movie_values(study, 0, "median")
-    assert len(MOVIE_SUMMARIES) == 6
+    assert len(MOVIE_SUMMARIES) == 9
+
+
+def test_gains_of_links_are_those_of_the_tables_in_every_sector(study: Study) -> None:
+    with pytest.raises(PopulationError, match="has no prediction: type cytodisk predict"):
+        movie_values(study, 0, "gain")
+    links = pd.DataFrame(
+        {"cell": 0, "source": "signal 1", "target": "velocity", "given": "", "layer": [0, 1]}
+    )
+    links = links.assign(gain=0.1, gain_excess=[0.02, -0.01], p=[0.05, 0.5])
+    cells = pd.DataFrame({"cell": [0, 1], "status": ["ok", "refused"], "reason": ["", "too short"]})
+    tables = {"links": links, "cells": cells.assign(surrogates=[19, 0])}
+    write_prediction(study.path, ("signal 1", "velocity", ""), tables, PREDICTION_TABLES, {"signals": []})
+    found = movie_values(study, 0, "gain")
+    assert found["channel"].to_numpy().tolist() == ["signal 1 → velocity"]
+    np.testing.assert_array_equal(found[0], np.repeat([[0.02], [-0.01]], 6, axis=1))
+    assert found.attrs["units"] == "nat"
+    score = movie_values(study, 0, "gain_score")[0, :, 3]
+    np.testing.assert_allclose(score, [norm.isf(0.025), norm.isf(0.475)])
+    with pytest.raises(NoValuesError, match="too short"):
+        movie_values(study, 1, "gain")
+    with pytest.raises(PopulationError, match="link 'velocity → signal 1' was not tested"):
+        movie_values(study, 0, "gain", channels=["velocity → signal 1"])
+
+
+def test_waves_have_an_order_by_layer_and_numbers_without_sign(study: Study) -> None:
+    with pytest.raises(PopulationError, match="has no waves of 'velocity': type cytodisk waves"):
+        movie_values(study, 0, "waves")
+    layers = pd.DataFrame({"cell": [0], "layer": pd.array([None], "Int64"), "order": [0.4], "p": [0.05]})
+    cells = layers.assign(status="ok", reason="", surrogates=19, period_s=90.0, persistence_s=300.0)
+    cells = cells.assign(speed_um_s=-0.2, direction=-0.9, p=0.04)
+    write_waves(study.path, "velocity", {"cells": cells, "layers": layers}, _COLUMNS, {})
+    found = movie_values(study, 0, "waves")
+    assert found["compartment"].to_numpy().tolist() == ["edge"]
+    np.testing.assert_array_equal(found[0, 0], np.full(6, 0.4))
+    numbers = found.attrs["numbers"]
+    assert numbers["wave_speed_um_s"] == 0.2
+    assert numbers["wave_direction"] == 0.9
+    assert numbers["wave_score"] == pytest.approx(norm.isf(0.02))
+    with pytest.raises(PopulationError, match="waves are compared of one signal at a time"):
+        movie_values(study, 0, "waves", channels=["velocity", "signal 1"])

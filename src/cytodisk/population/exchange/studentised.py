@@ -74,7 +74,8 @@ class GroupDifference:
         per_unit = 1.0 / max(self.sizes[0], 1) + 1.0 / max(self.sizes[1], 1)
         self._shared = None
         if families is not None:
-            self._shared = shared_medians(moments.variance * per_unit, self.testable, families)
+            shared = shared_medians(moments.variance * per_unit, self.testable, families)
+            self._shared = np.where(shared > self._least, shared, 0.0)
 
     @property
     def degrees(self) -> float:

@@ -33,8 +33,8 @@ def link_sentences(pooled: pd.DataFrame) -> list[str]:
     if pooled.empty:
         return []
     said = []
-    for condition, rows in pooled[pooled["curve"] == "raw"].groupby(CONDITION, sort=False):
-        partial = pooled[(pooled["curve"] == "partial") & (pooled[CONDITION] == condition)]
+    for condition, rows in pooled[pooled["kind"] == "raw"].groupby(CONDITION, sort=False):
+        partial = pooled[(pooled["kind"] == "partial") & (pooled[CONDITION] == condition)]
         if words := [*_of_condition(rows, partial)]:
             said.append(f"{condition}: {' '.join(words)}")
     return said
@@ -170,7 +170,7 @@ def difference_sentences(comparisons: pd.DataFrame) -> list[str]:
     """
     if comparisons.empty:
         return []
-    raw = comparisons[comparisons["curve"] == "raw"].dropna(subset="p_fwer")
+    raw = comparisons[comparisons["kind"] == "raw"].dropna(subset="p_fwer")
     return [
         _difference(str(name), str(control), rows)
         for (name, control), rows in raw.groupby([CONDITION, "control"], sort=False)

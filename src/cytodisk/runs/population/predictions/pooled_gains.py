@@ -53,10 +53,10 @@ def pool_gains(links: pd.DataFrame, cells: pd.DataFrame, options: PoolParameters
         pool = Pool(population, options.compare, options, _PLACE, "gain_excess", scores=scores).pooled()
         if kind == "raw":  # the others have the same cells, or fewer
             found.sentences += pool.sentences
-        found.warnings += [warning | {"curve": kind} for warning in pool.warnings]
+        found.warnings += [warning | {"kind": kind} for warning in pool.warnings]
         for name, table in pool.tables.items():
             if len(table):
-                parts[name].append(_with_names(table, named).assign(curve=kind))
+                parts[name].append(_with_names(table, named).assign(kind=kind))
     for name, tables in parts.items():
         found.tables[name] = pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
     said = [*link_sentences(found.tables["pooled"]), *difference_sentences(found.tables["comparisons"])]
