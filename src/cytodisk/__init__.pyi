@@ -122,6 +122,7 @@ from .runs.correlate.run_correlate import run_correlate as run_correlate
 from .runs.predict.run_predict import run_predict as run_predict
 from .runs.population.correlations.run_batch_correlate import run_batch_correlate as run_batch_correlate
 from .runs.population.predictions.run_batch_predict import run_batch_predict as run_batch_predict
+from .runs.population.wave_numbers.run_batch_waves import run_batch_waves as run_batch_waves
 from .runs.compare_windows.run_compare_windows import run_compare_windows as run_compare_windows
 from .runs.batch.run_batch import run_batch as run_batch
 from .runs.population.run_population import run_population as run_population
@@ -132,8 +133,14 @@ from .runs.shapes.shape_parameters import ShapeParameters as ShapeParameters
 from .runs.waves.wave_run_parameters import WavesParameters as WavesParameters
 from .runs.correlate.correlate_parameters import CorrelateParameters as CorrelateParameters
 from .runs.predict.predict_parameters import PredictParameters as PredictParameters
-from .runs.population.correlations.pool_parameters import BatchCorrelateParameters as BatchCorrelateParameters
-from .runs.population.correlations.pool_parameters import PoolOptions as PoolOptions
+from .runs.population.correlations.batch_correlate_parameters import (
+    BatchCorrelateParameters as BatchCorrelateParameters,
+)
+from .runs.population.predictions.batch_predict_parameters import (
+    BatchPredictParameters as BatchPredictParameters,
+)
+from .runs.population.wave_numbers.batch_waves_parameters import BatchWavesParameters as BatchWavesParameters
+from .runs.population.pooling.pool_parameters import PoolOptions as PoolOptions
 from .runs.compare_windows.compare_parameters import CompareWindowsParameters as CompareWindowsParameters
 from .runs.compare_windows.compare_parameters import CompareMovieParameters as CompareMovieParameters
 from .runs.compare_windows.compare_parameters import CompareNucleiParameters as CompareNucleiParameters
@@ -153,6 +160,8 @@ from .store.populations.pooled_correlation import open_pooled_correlation as ope
 from .store.populations.pooled_correlation import PooledCorrelation as PooledCorrelation
 from .store.populations.pooled_prediction import open_pooled_prediction as open_pooled_prediction
 from .store.populations.pooled_prediction import PooledPrediction as PooledPrediction
+from .store.populations.pooled_waves import open_pooled_waves as open_pooled_waves
+from .store.populations.pooled_waves import PooledWaves as PooledWaves
 from .runs.compare_windows.comparison import open_comparison as open_comparison
 from .runs.compare_windows.comparison import Comparison as Comparison
 from .runs.shapes.shape_tables import open_shapes as open_shapes

@@ -19,6 +19,8 @@ SLOW = {  # UMAP is compiled, processes are started
     "open_pooled_correlation",
     "run_batch",
     "run_batch_correlate",
+    "run_batch_predict",
+    "run_batch_waves",
     "run_correlate",
     "run_waves",
     "write_pooled_figure",

@@ -169,7 +169,7 @@ def test_waves_have_an_order_by_layer_and_numbers_without_sign(study: Study) -> 
     with pytest.raises(PopulationError, match="has no waves of 'velocity': type cytodisk waves"):
         movie_values(study, 0, "waves")
     layers = pd.DataFrame({"cell": [0], "layer": pd.array([None], "Int64"), "order": [0.4], "p": [0.05]})
-    cells = layers.assign(status="ok", reason="", surrogates=19, period_s=90.0, persistence_s=300.0)
+    cells = layers.assign(status="ok", reason="", period_s=90.0, persistence_s=300.0)
     cells = cells.assign(speed_um_s=-0.2, direction=-0.9, p=0.04)
     write_waves(study.path, "velocity", {"cells": cells, "layers": layers}, _COLUMNS, {})
     found = movie_values(study, 0, "waves")
@@ -178,6 +178,6 @@ def test_waves_have_an_order_by_layer_and_numbers_without_sign(study: Study) -> 
     numbers = found.attrs["numbers"]
     assert numbers["wave_speed_um_s"] == 0.2
     assert numbers["wave_direction"] == 0.9
-    assert numbers["wave_score"] == pytest.approx(norm.isf(0.02))
+    assert numbers["wave_order"] == 0.4
     with pytest.raises(PopulationError, match="waves are compared of one signal at a time"):
         movie_values(study, 0, "waves", channels=["velocity", "signal 1"])

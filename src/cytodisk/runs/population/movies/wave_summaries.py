@@ -13,7 +13,6 @@ import xarray as xr
 from cytodisk.errors import NoValuesError, PopulationError
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.population.movies.cell_layers import as_windows, reason_of
-from cytodisk.runs.population.movies.normal_score import normal_score
 from cytodisk.runs.population.movies.time_summaries import EDGE
 from cytodisk.store.study import Study
 
@@ -27,7 +26,6 @@ _OF_WAVES = {"period_s": "wave_period_s", "persistence_s": "wave_persistence_s"}
 _SIZES = {"speed_um_s": "wave_speed_um_s", "direction": "wave_direction"}  # which way round is by chance
 
 WAVE_UNITS = {
-    "wave_score": "1",
     "wave_order": "1",
     "wave_speed_um_s": "µm/s",
     "wave_direction": "1",
@@ -89,15 +87,12 @@ def numbers_of(cells: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        wave_score, the normal score of p, with a mean of 0 where there is no wave; wave_order;
-        wave_speed_um_s and wave_direction without their sign; wave_period_s and wave_persistence_s. All but
-        the first two are NaN where p is 0.05 or more.
+        wave_order, a normal quantile with a mean of 0 where there is no wave; wave_speed_um_s and
+        wave_direction without their sign; wave_period_s and wave_persistence_s. All but the first are NaN
+        where p is 0.05 or more.
     """
     p = cells["p"].to_numpy(np.float64)
-    table: dict[str, Any] = {
-        "wave_score": normal_score(p, cells["surrogates"].to_numpy(np.float64, na_value=np.nan)),
-        "wave_order": cells["order"].to_numpy(np.float64),
-    }
+    table: dict[str, Any] = {"wave_order": cells["order"].to_numpy(np.float64)}
     for names, size in ((_SIZES, np.abs), (_OF_WAVES, np.asarray)):
         for column, name in names.items():
             table[name] = np.where(p < LARGEST_P, size(cells[column].to_numpy(np.float64)), np.nan)

@@ -25,9 +25,9 @@ _NUMBER = Column(
     "number",
     pa.string(),
     "",
-    "wave_score: normal score of p, whose mean is 0 where there are no waves; wave_order; without their sign "
-    "wave_speed_um_s and wave_direction; wave_period_s; wave_persistence_s; the last four of the chosen "
-    "layer, and only of cells with p < 0.05",
+    "wave_order: 0 on average where there are no waves; without their sign wave_speed_um_s and "
+    "wave_direction; wave_period_s; wave_persistence_s; the last four of the chosen layer, and only of cells "
+    "with p < 0.05",
 )
 _UNIT = Column("unit", pa.string(), "", "unit of the number")
 _MEAN = Column("mean", pa.float64(), "", "mean over experiments")
@@ -66,14 +66,14 @@ POOLED_WAVE_TABLES: dict[str, Columns] = {
             "p",
             pa.float64(),
             "1",
-            "of wave_score: share of turned signs of whole experiments with a mean at least as far from 0, "
+            "of wave_order: share of turned signs of whole experiments with a mean at least as far from 0, "
             "in this layer alone; empty for other numbers",
         ),
         Column(
             "p_fwer",
             pa.float64(),
             "1",
-            "the same for the largest of all layers: up to 0.05, with a score above 0, there are waves",
+            "the same for the largest of all layers: up to 0.05, with an order above 0, there are waves",
         ),
         SMALLEST_P,
     ),

@@ -1,19 +1,18 @@
-"""Pool numbers of waves over experiments, test their score against 0, and compare conditions."""
+"""Pool numbers of waves over experiments, test their order against 0, and compare conditions."""
 
 from __future__ import annotations
 
 import numpy as np
 import pandas as pd
 
-from cytodisk.runs.population.movies.normal_score import normal_score
 from cytodisk.runs.population.movies.wave_summaries import WAVE_UNITS, numbers_of
 from cytodisk.runs.population.pooling.number_population import KEYS, number_population
 from cytodisk.runs.population.pooling.pool_parameters import PoolParameters
 from cytodisk.runs.population.pooling.pooled_population import TABLES, Pool, Pooled
 from cytodisk.runs.population.wave_numbers.wave_pool_words import difference_sentences, wave_sentences
 
-SCORE, ORDER = "wave_score", "wave_order"
-"""Numbers that all layers have; the others are of the chosen layer."""
+ORDER = "wave_order"
+"""The number that all layers have; the others are of the chosen layer."""
 
 _PLACE = ("channel", "layer")
 
@@ -33,17 +32,15 @@ def wave_numbers(cells: pd.DataFrame, layers: pd.DataFrame) -> pd.DataFrame:
     """
     done = cells[cells["status"] == "ok"]
     chosen = numbers_of(done).assign(cell=done["cell"], layer=done["layer"].fillna(0).astype(int))
-    surrogates = layers["cell"].map(cells.set_index("cell")["surrogates"]).astype(np.float64)
     of_layers = pd.DataFrame(
         {
             "cell": layers["cell"],
             "layer": layers["layer"].fillna(0).astype(int),
-            SCORE: normal_score(layers["p"].to_numpy(np.float64), surrogates.to_numpy()),
             ORDER: layers["order"].to_numpy(np.float64),
         }
     )
     keys = ["cell", "layer"]
-    both = of_layers.merge(chosen.drop(columns=[SCORE, ORDER]), on=keys, how="left")
+    both = of_layers.merge(chosen.drop(columns=ORDER), on=keys, how="left")
     long = both.melt(keys, list(WAVE_UNITS), var_name="channel", value_name="value")
     return long.dropna(subset="value").reset_index(drop=True)
 
@@ -62,8 +59,8 @@ def pool_waves(numbers: pd.DataFrame, cells: pd.DataFrame, options: PoolParamete
     Returns
     -------
     Pooled
-        An experiment counts once, whatever the number of its cells. Against 0 the score is tested, of all
-        layers together; between conditions all other numbers are, together.
+        An experiment counts once, whatever the number of its cells. Against 0 the order is tested, of all
+        layers together; between conditions all numbers are, together.
 
     Raises
     ------
@@ -73,8 +70,7 @@ def pool_waves(numbers: pd.DataFrame, cells: pd.DataFrame, options: PoolParamete
     population = number_population(numbers, cells[[*KEYS, "condition", "experiment"]], [*WAVE_UNITS], "value")
     if population is None:
         return Pooled(tables={name: pd.DataFrame() for name in TABLES})
-    others = [name for name in WAVE_UNITS if name != SCORE]  # p is smaller in longer movies
-    found = Pool(population, options.compare, options, _PLACE, "mean", zero=[SCORE], between=others).pooled()
+    found = Pool(population, options.compare, options, _PLACE, "mean", zero=[ORDER]).pooled()
     for name, table in found.tables.items():
         found.tables[name] = _tidy(table)
     said = wave_sentences(found.tables["pooled"], cells)
@@ -90,7 +86,7 @@ def _tidy(table: pd.DataFrame) -> pd.DataFrame:
     value = "difference" if "difference" in table else "mean"
     named = table.rename(columns={"channel": "number"}).dropna(subset=value).reset_index(drop=True)
     named["unit"] = named["number"].map(WAVE_UNITS)
-    untested = (named["number"] != SCORE) if "control" not in named else pd.Series(False, index=named.index)
+    untested = (named["number"] != ORDER) if "control" not in named else pd.Series(False, index=named.index)
     if "smallest_p" in named:
         named.loc[untested, "smallest_p"] = np.nan
     return named

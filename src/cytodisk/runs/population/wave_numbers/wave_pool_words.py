@@ -13,8 +13,7 @@ from cytodisk.runs.population.movies.wave_summaries import LARGEST_P
 from cytodisk.runs.population.pooling.number_words import cells_words, digits, significant, with_interval
 
 NAMES = {
-    "wave_score": "score of waves",
-    "wave_order": "order",
+    "wave_order": "order of waves",
     "wave_speed_um_s": "speed along the edge",
     "wave_direction": "direction (1: all waves run one way, 0: standing)",
     "wave_period_s": "period",
@@ -49,20 +48,20 @@ def wave_sentences(pooled: pd.DataFrame, cells: pd.DataFrame) -> list[str]:
 
 
 def _of_condition(rows: pd.DataFrame, cells: pd.DataFrame) -> Iterator[str]:
-    score = _strongest(rows[rows["number"] == "wave_score"])
-    layers = rows.loc[rows["number"] == "wave_score", "layer"].nunique()
-    where = f" in layer {score['layer']}" if layers > 1 else ""
-    chance = f"mean score {digits(score['mean'], 2)}{where}"
-    if pd.isna(score["p_fwer"]):
+    order = _strongest(rows[rows["number"] == "wave_order"])
+    layers = rows.loc[rows["number"] == "wave_order", "layer"].nunique()
+    where = f" in layer {order['layer']}" if layers > 1 else ""
+    chance = f"mean order {digits(order['mean'], 2)}{where}"
+    if pd.isna(order["p_fwer"]):
         verdict = f"Whether there are waves beyond chance was not tested ({chance})."
-    elif score["smallest_p"] > LEVEL:
-        best = f"p is {score['smallest_p']:.2g} at best"
+    elif order["smallest_p"] > LEVEL:
+        best = f"p is {order['smallest_p']:.2g} at best"
         verdict = f"Whether there are waves beyond chance cannot be told, as {best} ({chance})."
     else:
         over = ", over all layers" if layers > 1 else ""
-        is_wave = score["p_fwer"] <= LEVEL and score["mean"] > 0.0
+        is_wave = order["p_fwer"] <= LEVEL and order["mean"] > 0.0
         what = "There are waves beyond chance" if is_wave else "There are no waves beyond chance"
-        verdict = f"{what} ({chance}, p = {score['p_fwer']:.2g}{over})."
+        verdict = f"{what} ({chance}, p = {order['p_fwer']:.2g}{over})."
     yield verdict
     having = cells[cells["p"] < LARGEST_P]
     kinds = ", ".join(f"{count} {kind}" for kind, count in having["kind"].value_counts().items())
@@ -70,13 +69,13 @@ def _of_condition(rows: pd.DataFrame, cells: pd.DataFrame) -> Iterator[str]:
     told = [_number(rows, name) for name in _TOLD]
     if any(told):
         yield f"Of these cells: {', '.join(filter(None, told))}."
-    yield f"{cells_words(int(score['n_cells']), int(score['n_experiments']))}."
+    yield f"{cells_words(int(order['n_cells']), int(order['n_experiments']))}."
 
 
-def _strongest(scores: pd.DataFrame) -> Any:
-    """Of the layers with waves beyond chance that with the largest score; of all where none has."""
-    chosen = scores[(scores["p_fwer"] <= LEVEL) & (scores["mean"] > 0.0)]
-    chosen = chosen if len(chosen) else scores
+def _strongest(orders: pd.DataFrame) -> Any:
+    """Of the layers with waves beyond chance that with the largest order; of all where none has."""
+    chosen = orders[(orders["p_fwer"] <= LEVEL) & (orders["mean"] > 0.0)]
+    chosen = chosen if len(chosen) else orders
     return chosen.iloc[int(chosen["mean"].to_numpy().argmax())]
 
 
@@ -127,7 +126,7 @@ def _difference(name: str, control: str, rows: pd.DataFrame) -> str:
 
 def _size(row: Any, name: str, control: str) -> str:
     interval = f"{significant(row['difference_low'])} to {significant(row['difference_high'])}"
-    layer = f" in layer {row['layer']}" if row["number"] in ("wave_score", "wave_order") else ""
+    layer = f" in layer {row['layer']}" if row["number"] == "wave_order" else ""
     return (
         f"{NAMES[row['number']]}{layer}, {name} less {control} {significant(row['difference'], row['unit'])} "
         f"(95 % interval {interval}), p = {row['p_holm']:.2g}"
