@@ -3,33 +3,37 @@
 import numpy as np
 import pytest
 
-from cytodisk.analysis.prediction.chance_gains import chance_gains, memory, split_source
+from cytodisk.analysis.prediction.chance_gains import chance_gains, split_source
 from cytodisk.analysis.prediction.lagged_design import rows_with_past
 from cytodisk.analysis.prediction.layer_series import LayerSeries
 from cytodisk.analysis.prediction.pooled_autoregression import Held, explained
 from cytodisk.analysis.prediction.prediction_orders import Orders
-from cytodisk.analysis.prediction.source_shifts import ShiftedSource, Shifts
+from cytodisk.analysis.prediction.source_shifts import ShiftedSource, Shifts, circle_of
 
 FRAMES, SECTORS, PAST = 30, 4, 3
 
 
 def shifted(source: np.ndarray, frames: int, sectors: int) -> np.ndarray:
-    """Lags 1 to 3 of a source on a circle with three empty frames, shape (T, S, 3)."""
-    circle = np.concatenate([source, np.zeros((PAST, SECTORS))])
-    moved = np.roll(circle, (frames, sectors), axis=(0, 1))
-    return np.stack([np.roll(moved, lag, axis=0)[:FRAMES] for lag in range(1, PAST + 1)], axis=-1)
+    """Lags 1 to 3 of a source on a circle, 0 where they hold both its ends or none, shape (T, S, 3)."""
+    length = len(source)
+    circle = np.concatenate([source, np.full((circle_of(length) - length, SECTORS), np.nan)])
+    past = np.stack([np.roll(circle, lag, axis=0) for lag in range(1, PAST + 1)], axis=-1)
+    past[1:PAST] = np.nan  # frame 0 sees the last ones alone
+    past[np.isnan(past).any(axis=-1)] = 0.0
+    return np.roll(past, (frames, sectors), axis=(0, 1))[:length]
 
 
-def test_products_are_those_of_the_shifted_columns() -> None:
+@pytest.mark.parametrize("frames", [FRAMES, FRAMES + 1])  # the circle is as long, or longer
+def test_products_are_those_of_the_shifted_columns(frames: int) -> None:
     random = np.random.default_rng(0)
-    source, table = random.normal(size=(FRAMES, SECTORS)), random.normal(size=(FRAMES, SECTORS, 2))
-    used = random.random((FRAMES, SECTORS)) < 0.8
+    source, table = random.normal(size=(frames, SECTORS)), random.normal(size=(frames, SECTORS, 2))
+    used = random.random((frames, SECTORS)) < 0.8
     table[~used] = 0.0
     shifts = Shifts(np.array([5, 17, 0]), np.array([1, 3, 0]))
     run = ShiftedSource(source, used, PAST, shifts)
-    with_columns, with_itself = run.with_columns(table), run.with_itself()
-    for place, (frames, sectors) in enumerate(zip(shifts.frames, shifts.sectors, strict=True)):
-        columns = np.where(used[..., None], shifted(source, frames, sectors), 0.0)
+    with_columns, with_itself = run.products(table)
+    for place, (later, around) in enumerate(zip(shifts.frames, shifts.sectors, strict=True)):
+        columns = np.where(used[..., None], shifted(source, later, around), 0.0)
         centred = columns - np.where(used[..., None], columns.sum(axis=0) / used.sum(axis=0)[:, None], 0.0)
         np.testing.assert_allclose(with_columns[place], np.einsum("tsq,tsk->qk", columns, table), atol=1e-12)
         np.testing.assert_allclose(with_itself[place], np.einsum("tsq,tsk->qk", centred, centred), atol=1e-12)
@@ -65,9 +69,8 @@ def test_a_surrogate_is_the_model_with_the_shifted_rest() -> None:
     rows = rows_with_past(series, PAST)
     held = Held.of(series, rows, orders)
     gains = chance_gains(held, series, orders, PAST, None, count=40, seed=0)
-    followed, rest = split_source(series, orders)
-    least = min(PAST + memory(rest), (FRAMES + PAST) // 4)
-    shifts = Shifts.drawn(FRAMES + PAST, SECTORS, least, 40, 0)
+    followed, rest = split_source(series, orders, PAST)
+    shifts = Shifts.drawn(circle_of(FRAMES), SECTORS, PAST, 40, 0)
     own = [target[rows.frame - lag, rows.sector] for lag in (1, 2)]
     beside = [np.roll(target, 1, axis=1)[rows.frame - lag, rows.sector] for lag in (1, 2)]
     means = np.eye(SECTORS)[rows.sector]
@@ -81,20 +84,30 @@ def test_a_surrogate_is_the_model_with_the_shifted_rest() -> None:
         assert gain == pytest.approx(np.log(before / after), abs=1e-10)
 
 
-def test_the_source_is_the_sum_of_both_its_parts() -> None:
+def test_the_source_is_the_sum_of_what_others_say_and_the_rest() -> None:
     random = np.random.default_rng(4)
-    target, source = random.normal(size=(2, FRAMES, SECTORS))
-    source[1:] += target[:-1]
-    followed, rest = split_source(LayerSeries(target, source, (), (), True), Orders(2, 0, 1))
-    np.testing.assert_allclose(followed + rest, source - source.mean(axis=0), atol=1e-12)
-    assert rest[2:].var() < 0.8 * source.var()
-    assert abs(np.mean(rest[2:] * target[1:-1])) < 0.02
+    target, source = random.normal(size=(2, 300, SECTORS))
+    source[1:] += 2.0 * target[:-1]
+    followed, rest = split_source(LayerSeries(target, source, (), (), True), Orders(2, 0, 1), PAST)
+    np.testing.assert_allclose(rest.mean(axis=0), 0.0, atol=1e-12)
+    both = followed + rest
+    np.testing.assert_allclose(both - both.mean(axis=0), source - source.mean(axis=0), atol=1e-12)
+    np.testing.assert_allclose(
+        followed[2:] - followed[2:].mean(axis=0), 2.0 * (target[1:-1] - target[1:-1].mean(axis=0)), atol=0.3
+    )
 
 
-def test_memory_is_the_lag_at_which_little_is_left() -> None:
-    slow = np.zeros((400, 30))
-    noise = np.random.default_rng(6).normal(size=slow.shape)
+def test_slow_series_that_know_nothing_of_each_other_stay_whole() -> None:
+    slow = np.random.default_rng(6).normal(size=(2, 400, 1))
     for frame in range(1, 400):
-        slow[frame] = 0.9 * slow[frame - 1] + noise[frame]
-    assert 7 <= memory(slow) <= 11  # 0.9 ** 9.5 is 1/e
-    assert memory(noise) == 1
+        slow[:, frame] += 0.95 * slow[:, frame - 1]
+    followed, rest = split_source(LayerSeries(slow[0], slow[1], (), (), False), Orders(1, 0, 1), PAST)
+    assert followed.var() < 0.05 * rest.var()
+
+
+def test_where_gaps_leave_too_few_rows_all_of_the_source_is_rest() -> None:
+    source, target = np.random.default_rng(7).normal(size=(2, FRAMES, SECTORS))
+    source[::4] = np.nan
+    followed, rest = split_source(LayerSeries(target, source, (), (), True), Orders(2, 0, 1), PAST)
+    assert not followed.any()
+    np.testing.assert_allclose(rest, np.nan_to_num(source - np.nanmean(source, axis=0)))

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from cytodisk.analysis.prediction.lagged_design import Rows, orthonormal
+from cytodisk.analysis.prediction.lagged_design import Rows
 from cytodisk.analysis.prediction.layer_series import LayerSeries
 from cytodisk.analysis.prediction.pooled_autoregression import Held, best_gain, explained, without
 from cytodisk.analysis.prediction.prediction_orders import Orders
-from cytodisk.analysis.prediction.source_shifts import ShiftedSource, Shifts
+from cytodisk.analysis.prediction.source_shifts import ShiftedSource, Shifts, circle_of
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import ParameterError
 
 FEWEST_SHIFTS = 19
 """With fewer, no p-value is as small as 0.05."""
-
-_MEMORY = np.exp(-1.0)  # autocorrelation from which on a series has forgotten
 
 
 def chance_gains(
@@ -54,60 +52,88 @@ def chance_gains(
 
     Notes
     -----
-    The source x is split into its regression on target, neighbours and given signals, of the same frame and
+    The source is split into what target, neighbours and given signals say of it, of the same frame and
     before, and the rest. Only the rest is shifted, in time and around the cell: the surrogate hangs together
     with all of these as the source does, and its rest keeps its correlations in time and between sectors.
+    Shifts by less than the past that is tried, to either side, are left out: what is true comes back in them.
+    More are not: where few are left, which hang together with each other but not with the source, the source
+    is beyond all of them too often.
     """
     used = held.rows.table(np.ones(held.rows.size), len(series.target)).astype(bool)
     kept = held.rows.count > 0
-    followed, rest = split_source(series, orders)
-    circle = len(rest) + past
-    least = min(past + memory(rest[:, kept]), circle // 4)
-    shifts = Shifts.drawn(circle, int(kept.sum()) if series.turns else 1, least, count, seed)
+    followed, rest = split_source(series, orders, past)
+    circle = circle_of(len(rest))
+    shifts = Shifts.drawn(circle, int(kept.sum()) if series.turns else 1, past, count, seed)
     if len(shifts.frames) < min(FEWEST_SHIFTS, count):
         raise ParameterError(
-            f"{len(rest)} frames can be shifted in {len(shifts.frames)} ways only, beyond {least} frames to "
-            f"either side, too few for a p-value: pass at least {4 * (past + FEWEST_SHIFTS)} frames, a "
+            f"{len(rest)} frames can be shifted in {len(shifts.frames)} ways only, beyond {past} frames to "
+            f"either side, too few for a p-value: pass at least {2 * past + FEWEST_SHIFTS} frames, a "
             "smaller max_order, or surrogates=0"
         )
     shifted = ShiftedSource(rest[:, kept], used[:, kept], past, shifts)
     fixed = _lags(held, followed, past)
     columns = np.column_stack([held.basis, fixed, held.left])
-    products = shifted.with_columns(held.rows.table(columns, len(rest))[:, kept])
+    products, square = shifted.products(held.rows.table(columns, len(rest))[:, kept])
     size = held.basis.shape[1]
     along, across, with_target = products[..., :size], products[..., size:-1], products[..., -1]
-    square = shifted.with_itself() - along @ along.transpose(0, 2, 1)
-    square += across + across.transpose(0, 2, 1) + fixed.T @ fixed
+    square += fixed.T @ fixed - along @ along.transpose(0, 2, 1)
+    square += across + across.transpose(0, 2, 1)
     return best_gain(held, explained(square, with_target + fixed.T @ held.left), price)[0]
 
 
-def split_source(series: LayerSeries, orders: Orders) -> tuple[FloatArray, FloatArray]:
-    """The source's regression on all others, now and before, and the rest, as tables (T, S).
+def split_source(series: LayerSeries, orders: Orders, past: int) -> tuple[FloatArray, FloatArray]:
+    """What all others, now and before, say of the source, and the rest, as tables (T, S).
 
-    The rest has mean 0 in each sector; both are 0 where they are not known.
+    Both are 0 where they are not known; the rest has mean 0 in each sector. Where gaps leave fewer rows than
+    twice the coefficients, all of the source is rest.
+
+    Notes
+    -----
+    Slow series seem to hang together where they do not (Granger and Newbold 1974,
+    doi:10.1016/0304-4076(74)90034-7): the coefficients are those of series that the source's own
+    autoregression has made white (Cochrane and Orcutt 1949, doi:10.1080/01621459.1949.10483290).
     """
     known = np.isfinite(series.source)
     rows = Rows.of(known)
     source = rows.table(rows.lagged(series.source, range(1))[0], len(known))
     blocks = [(one, orders.own) for one in (series.target, *series.beside)]
     blocks += [(one, orders.given) for one in series.given]
-    longest = max(order for _, order in blocks)
-    complete = known & _has_past(blocks)
-    complete[:longest] = False
-    rows = Rows.of(complete)
-    columns = [column for one, order in blocks for column in rows.lagged(one, range(order + 1))]
-    basis = orthonormal(columns, rows.size)
-    values = rows.centred(source[rows.frame, rows.sector])
-    followed = rows.table(basis @ (basis.T @ values), len(known))
-    return followed, np.where(known, source - followed, 0.0)
+    memory = _own_memory(series.source, past)
+    white = [(_filtered(one, memory), order) for one, order in blocks]
+    target = _filtered(series.source, memory)
+    rows = Rows.of(np.isfinite(target) & _has_past(white))
+    columns = _columns(rows, white)
+    if rows.size - rows.sectors < 2 * columns.shape[1]:
+        return np.zeros(known.shape), source
+    says = np.linalg.lstsq(columns, rows.lagged(target, range(1))[0], rcond=None)[0]
+    rows = Rows.of(known & _has_past(blocks))
+    followed = rows.table(_columns(rows, blocks) @ says, len(known))
+    rest = Rows.of(known)
+    left = rest.lagged(source - followed, range(1))[0]
+    return followed, rest.table(left, len(known))
 
 
-def memory(series: FloatArray) -> int:
-    """Frames after which series (T, S) have forgotten what they were: autocorrelation below 1/e."""
-    spectrum = np.abs(np.fft.rfft(series, n=2 * len(series), axis=0)) ** 2
-    products = np.fft.irfft(spectrum.sum(axis=1))[: len(series)]
-    below = np.nonzero(products < _MEMORY * products[0])[0]
-    return int(below[0]) if below.size else len(series)
+def _own_memory(series: FloatArray, past: int) -> FloatArray:
+    """Coefficients of lags 1 to `past` in an autoregression of series (T, S)."""
+    rows = Rows.of(_has_past([(series, past)]))
+    columns = np.column_stack(rows.lagged(series, range(1, past + 1)))
+    wanted = rows.lagged(series, range(1))[0]
+    return np.asarray(np.linalg.lstsq(columns, wanted, rcond=None)[0])
+
+
+def _filtered(series: FloatArray, memory: FloatArray) -> FloatArray:
+    """Series (T, S) less what a memory says of them; NaN where that is not known."""
+    frames, past = len(series), len(memory)
+    white = np.full(series.shape, np.nan)
+    white[past:] = series[past:]
+    for lag, coefficient in enumerate(memory, 1):
+        white[past:] -= coefficient * series[past - lag : frames - lag]
+    return white
+
+
+def _columns(rows: Rows, blocks: list[tuple[FloatArray, int]]) -> FloatArray:
+    """Lags 0, 1, … of each of a few series, as far back as its order."""
+    return np.column_stack([one for series, order in blocks for one in rows.lagged(series, range(order + 1))])
 
 
 def _has_past(blocks: list[tuple[FloatArray, int]]) -> BoolArray:
