@@ -64,6 +64,7 @@ def test_a_surrogate_is_the_model_with_the_shifted_rest() -> None:
     target, source, other = random.normal(size=(3, FRAMES, SECTORS))
     source[1:] += target[:-1]
     source[7, 2] = np.nan
+    target[-1] = np.nan
     series = LayerSeries(target, source, (np.roll(target, 1, axis=1),), (other,), turns=True)
     orders = Orders(2, 1, PAST)
     rows = rows_with_past(series, PAST)

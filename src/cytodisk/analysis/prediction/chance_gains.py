@@ -141,6 +141,7 @@ def _has_past(blocks: list[tuple[FloatArray, int]]) -> BoolArray:
     for one, order in blocks:
         finite = np.isfinite(one)
         for lag in range(order + 1):
+            known[:lag] = False
             known[lag:] &= finite[: len(finite) - lag]
     return known
 
