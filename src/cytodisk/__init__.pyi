@@ -76,6 +76,7 @@ from .analysis.pairs.window_distances import window_distances as window_distance
 from .analysis.correlation.prepared_series import prepare_series as prepare_series
 from .analysis.correlation.jitter_mark import jitter_step as jitter_step
 from .analysis.correlation.jitter_mark import velocity_jitter as velocity_jitter
+from .analysis.waves.disk_waves import disk_waves as disk_waves
 from .analysis.waves.edge_waves import edge_waves as edge_waves
 from .analysis.waves.waves_parameters import WaveSearchParameters as WaveSearchParameters
 from .analysis.stress.stress_marks import stress_marks as stress_marks

@@ -12,7 +12,7 @@ from cytodisk.analysis.time_steps import has_times
 from cytodisk.analysis.waves.edge_series import EdgeSeries, frame_times, named_values, sector_lengths
 from cytodisk.analysis.waves.wave_order import null_orders, order_score, p_value
 from cytodisk.analysis.waves.wave_phase import demodulated, pair_amplitudes, persistence, travel_direction
-from cytodisk.analysis.waves.wave_search import WaveFound, strongest_wave
+from cytodisk.analysis.waves.wave_search import WaveFound, mode_shares, strongest_wave
 from cytodisk.analysis.waves.waves_parameters import WaveSearchParameters
 from cytodisk.taking import takes
 
@@ -55,8 +55,10 @@ def edge_waves(
         most the movie; order, the score of order, a normal quantile: 0 ± 1 without waves; p.
 
         By time and sector: phase, of the wave's period in radians, and amplitude. By `around`, the number of
-        waves: power, the share of the variance that each mode has at the periods that can be seen. By
-        surrogate: order_null. The attrs are the settings, and shortest_period_s and longest_period_s.
+        waves: power, the share of the variance that each mode has at the periods that can be seen, and
+        power_threshold, which 95 % of the surrogates stay below. By frequency and `travelling`, the number
+        of waves, below 0 for those that run towards lower sectors: spectrum, their share. By surrogate:
+        order_null. The attrs are the settings, and shortest_period_s and longest_period_s.
 
     Raises
     ------
@@ -130,13 +132,19 @@ def _dataset(named: xr.DataArray, series: EdgeSeries, found: WaveFound) -> xr.Da
         "p": (p, "1"),
     }
     data: dict[str, Any] = {name: ((), value, {"units": unit}) for name, (value, unit) in scalars.items()}
-    data["power"] = ("around", found.power, {"units": "1"})
+    data["power"] = ("around", mode_shares(found.spectrum), {"units": "1"})
+    data["power_threshold"] = ("around", found.chance, {"units": "1"})
+    highest = len(found.chance) - 1
+    signed = np.concatenate([found.spectrum[:, :highest:-1], found.spectrum[:, : highest + 1]], axis=1)
+    data["spectrum"] = (("frequency", "travelling"), signed, {"units": "1"})
     data["phase"] = (("time", "sector"), np.angle(field), {"units": "rad"})
     data["amplitude"] = (("time", "sector"), np.abs(field), {"units": named.attrs.get("units", "a.u.")})
     data["order_null"] = ("surrogate", null_orders(found.null), {"units": "1"})
     coords: dict[str, Any] = {
         "time_s": ("time", series.seconds, {"units": "s"}),
-        "around": ("around", np.arange(len(found.power)), {"units": "1"}),
+        "around": ("around", np.arange(highest + 1), {"units": "1"}),
+        "travelling": ("travelling", np.arange(-highest, highest + 1), {"units": "1"}),
+        "frequency": ("frequency", found.frequencies, {"units": "1/s"}),
         "sector": named["sector"].variable if "sector" in named.coords else np.arange(named.sizes["sector"]),
     }
     coords |= {name: named[name].variable for name in ("time", "frame") if has_times(named, name)}

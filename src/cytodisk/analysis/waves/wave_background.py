@@ -6,11 +6,12 @@ have much power at one period, in all modes. A wave has more at one mode and one
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import FloatArray, IntArray
 
 _FLOOR = 1e-3  # of the mean power at a frequency: modes with less count as if they had it
 _PASSES = 2
@@ -20,14 +21,14 @@ _SLOPE_PRIOR = 4.0  # weight of a slope of 0, in values
 
 @dataclass(frozen=True, eq=False)
 class Background:
-    """Power by mode and by frequency.
+    """Power by group of waves and by frequency.
 
     Attributes
     ----------
     excess : ndarray of shape (K, C, R) and dtype float
         Natural logarithm of power over background.
-    level, slope : ndarray of shape (M + 1, R) and dtype float
-        Of each mode, over the logarithm of frequency less its mean: slow ones may be smoother than fast ones.
+    level, slope : ndarray of shape (G, R) and dtype float
+        Of each group, over the logarithm of frequency less its mean: slow ones may be smoother.
     """
 
     excess: FloatArray
@@ -35,56 +36,59 @@ class Background:
     slope: FloatArray
 
 
-def background(power: FloatArray, frequencies: FloatArray) -> Background:
-    """What modes and frequencies explain.
+def edge_groups(highest: int) -> list[IntArray]:
+    """Columns of `wave_cells` that differ in their direction alone: mode 0, mode 1 both ways, …"""
+    return [np.array([mode, mode + highest][: 2 if mode else 1]) for mode in range(highest + 1)]
+
+
+def background(power: FloatArray, frequencies: FloatArray, groups: Sequence[IntArray]) -> Background:
+    """What waves that differ in their direction alone have in common, and what all have at a frequency.
 
     Parameters
     ----------
     power : ndarray of shape (K, C, R) and dtype float
-        Of `wave_cells`.
+        Such as that of `wave_cells`.
     frequencies : ndarray of shape (K,) and dtype float
+    groups : sequence of ndarray of dtype int
+        Columns that differ in their direction alone.
     """
     floor = _FLOOR * power.mean(axis=1, keepdims=True) + np.finfo(np.float64).tiny
     logs = np.log(power + floor)
-    modes = (power.shape[1] - 1) // 2
     abscissa = np.log(frequencies)
     abscissa = abscissa - abscissa.mean()
-    level = np.zeros((modes + 1, power.shape[2]))
+    level = np.zeros((len(groups), power.shape[2]))
     slope = np.zeros_like(level)
     for _ in range(_PASSES):
-        if modes:
+        if len(groups) > 1:
             logs -= np.median(logs, axis=1, keepdims=True)
-        for mode in range(modes + 1):
-            cells = [mode, mode + modes][: 2 if mode else 1]
+        for group, cells in enumerate(groups):
             a, b = _robust_line(logs[:, cells], abscissa)
             logs[:, cells] -= (a + abscissa[:, None] * b)[:, None]
-            level[mode] += a
-            slope[mode] += b
+            level[group] += a
+            slope[group] += b
     return Background(logs, level, slope)
 
 
-def wave_scores(power: FloatArray, excess: FloatArray, variance: FloatArray, visible: int) -> FloatArray:
+def wave_scores(share: FloatArray, excess: FloatArray, groups: Sequence[IntArray]) -> FloatArray:
     """Share of the variance that each wave carries, times the logarithm of its excess; below 0 counts as 0.
 
     Parameters
     ----------
-    power, excess : ndarray of shape (K, 2 M + 1, R) and dtype float
-    variance : ndarray of shape (R,) and dtype float
-        Of all sectors through time.
-    visible : int
-        How many frequencies are looked for.
+    share, excess : ndarray of shape (K, C, R) and dtype float
+    groups : sequence of ndarray of dtype int
 
     Returns
     -------
-    ndarray of shape (visible, 3 M + 1, R) and dtype float
-        Of each wave, then of both directions of modes 1 to M together: standing waves.
+    ndarray of shape (K, C + groups of several, R) and dtype float
+        Of each wave, then of all of a group together: standing waves.
     """
-    share, excess = power[:visible] / variance, excess[:visible]
-    modes = (power.shape[1] - 1) // 2
-    up, down = slice(1, modes + 1), slice(modes + 1, None)
-    both = np.logaddexp(excess[:, up], excess[:, down]) - np.log(2.0)
-    shares = np.concatenate([share, share[:, up] + share[:, down]], axis=1)
-    return np.asarray(shares * np.maximum(np.concatenate([excess, both], axis=1), 0.0))
+    several = [cells for cells in groups if len(cells) > 1]
+    excesses, shares = [excess], [share]
+    for cells in several:
+        together = np.logaddexp.reduce(excess[:, cells], axis=1) - np.log(len(cells))
+        excesses.append(together[:, None])
+        shares.append(share[:, cells].sum(axis=1)[:, None])
+    return np.asarray(np.concatenate(shares, axis=1) * np.maximum(np.concatenate(excesses, axis=1), 0.0))
 
 
 def with_sums(power: FloatArray, sums: FloatArray) -> FloatArray:

@@ -10,7 +10,7 @@ import numpy as np
 from cytodisk.analysis.waves.edge_modes import highest_mode, mode_weights, modes_of
 from cytodisk.analysis.waves.edge_series import EdgeSeries, check_shown
 from cytodisk.analysis.waves.mode_spectrum import Bands, bands, refined_frequency, wave_cells
-from cytodisk.analysis.waves.wave_background import background, wave_scores, with_sums
+from cytodisk.analysis.waves.wave_background import background, edge_groups, wave_scores, with_sums
 from cytodisk.analysis.waves.wave_surrogates import WaveNull
 from cytodisk.analysis.waves.waves_parameters import WaveSearchParameters
 from cytodisk.arrays import ComplexArray, FloatArray
@@ -31,8 +31,12 @@ class WaveFound:
     score : float
     null : ndarray of shape (R,) and dtype float
         Scores of surrogates.
-    power : ndarray of shape (M + 1,) and dtype float
-        Share of the variance that each mode has at the periods that are looked for.
+    spectrum : ndarray of shape (K, 2 M + 1) and dtype float
+        Share of the variance of each wave at each frequency that is looked for, as `wave_cells` orders them.
+    frequencies : ndarray of shape (K,) and dtype float
+        In 1/s.
+    chance : ndarray of shape (M + 1,) and dtype float
+        Share of each mode that 95 % of the surrogates stay below.
     modes : ndarray of shape (T, M + 1) and dtype complex
         Of the frames that are used.
     seconds : ndarray of shape (T,) and dtype float
@@ -45,7 +49,9 @@ class WaveFound:
     frequency: float
     score: float
     null: FloatArray
-    power: FloatArray
+    spectrum: FloatArray
+    frequencies: FloatArray
+    chance: FloatArray
     modes: ComplexArray
     seconds: FloatArray
     periods: tuple[float, float]
@@ -80,25 +86,31 @@ class WaveSearch:
         """Power (K, C, R) of movies (T, S, R)."""
         return wave_cells(modes_of(movies, self._weights), self.bands)
 
+    def shares(self, power: FloatArray) -> FloatArray:
+        """Share of the variance at the frequencies that are looked for; the taper shows each in several."""
+        return np.asarray(power[: self.bands.visible] / (_OVERLAP * self._variance))
+
     def scores(self, power: FloatArray) -> FloatArray:
         """Scores (visible, 3 M + 1, R)."""
-        excess = background(power, self.bands.frequencies).excess
-        variance = np.full(power.shape[2], self._variance)
-        return wave_scores(power, excess, variance, self.bands.visible)
+        groups, visible = edge_groups(self.highest), self.bands.visible
+        excess = background(power, self.bands.frequencies, groups).excess
+        return wave_scores(power[:visible] / self._variance, excess[:visible], groups)
 
     def null_scores(
         self, how: WaveSearchParameters, sums: FloatArray, progress: Callable[[int, int], None] | None
-    ) -> FloatArray:
-        """Largest score of each surrogate."""
+    ) -> tuple[FloatArray, FloatArray]:
+        """Largest score of each surrogate, (R,), and the shares of modes in its variance, (M + 1, R)."""
         found: list[float] = []
+        shares = []
         for movies in WaveNull(self.series, self.bands, how.seed).draw(how.surrogates):
             power = self.power(movies)
             if self.highest:
                 power = with_sums(power, sums)
             found.extend(self.scores(power).max(axis=(0, 1)))
+            shares.append(mode_shares(self.shares(power)))
             if progress is not None:
                 progress(len(found), how.surrogates)
-        return np.array(found)
+        return np.array(found), np.concatenate(shares, axis=1)
 
 
 def strongest_wave(
@@ -128,14 +140,28 @@ def strongest_wave(
     frequency = refined_frequency(
         search.modes[:, mode], search.seconds, float(search.bands.frequencies[place]), step, within
     )
-    shares = power[: search.bands.visible, :, 0].sum(axis=0) / (_OVERLAP * search._variance)
-    highest = search.highest
-    by_mode = shares[: highest + 1].copy()
-    by_mode[1:] += shares[highest + 1 :]
-    null = search.null_scores(how, power[:, :, 0].sum(axis=1), progress)
+    null, chance = search.null_scores(how, power[:, :, 0].sum(axis=1), progress)
     return WaveFound(
-        mode, frequency, float(scores.max()), null, by_mode, search.modes, search.seconds, search.periods
+        mode=mode,
+        frequency=frequency,
+        score=float(scores.max()),
+        null=null,
+        spectrum=search.shares(power)[:, :, 0],
+        frequencies=search.bands.frequencies[: search.bands.visible],
+        chance=np.quantile(chance, 0.95, axis=1),
+        modes=search.modes,
+        seconds=search.seconds,
+        periods=search.periods,
     )
+
+
+def mode_shares(shares: FloatArray) -> FloatArray:
+    """Shares (K, 2 M + 1, …) of waves summed over frequencies and directions: (M + 1, …)."""
+    summed = shares.sum(axis=0)
+    highest = (len(summed) - 1) // 2
+    by_mode = summed[: highest + 1].copy()
+    by_mode[1:] += summed[highest + 1 :]
+    return np.asarray(by_mode)
 
 
 def wave_mode(wave: int, highest: int) -> int:

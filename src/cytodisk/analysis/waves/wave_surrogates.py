@@ -16,14 +16,15 @@ from cytodisk.analysis.correlation.prepared_series import interpolated
 from cytodisk.analysis.waves.edge_modes import mode_weights, modes_of
 from cytodisk.analysis.waves.edge_series import EdgeSeries
 from cytodisk.analysis.waves.mode_spectrum import Bands, wave_cells
-from cytodisk.analysis.waves.wave_background import Background, background
+from cytodisk.analysis.waves.wave_background import Background, background, edge_groups
 from cytodisk.arrays import FloatArray, IntArray
 
 _BLOCK = 25  # surrogates made at once
-_TRIALS = 25  # from which the levels of modes are set
-_ROUNDS = 3
-_LEAST = -16.0  # logarithm of the power of a mode over that of the strongest
+TRIALS = 25  # from which the levels of modes are set
+ROUNDS = 3
+LEAST = -16.0  # logarithm of the power of a mode over that of the strongest
 _OWN_SHAPE = 6.0  # a sector's own spectrum over the mean one is smoothed by frames / this
+SMOOTH = 1.0
 _FINE = 1.0  # bins of twice the duration by which the mean spectrum is smoothed
 
 
@@ -47,11 +48,11 @@ class WaveNull:
     def __init__(self, series: EdgeSeries, found: Bands, seed: int) -> None:
         self._random = np.random.default_rng(seed)
         self._used = series.used
-        self._slots = _slots(series)
+        self._slots = frame_slots(series)
         self._missing = ~np.isfinite(series.values)
         on_grid = np.full((self._slots[-1] + 1, series.values.shape[1]), np.nan)
         on_grid[self._slots] = series.values
-        self._amplitude = _amplitudes(on_grid)
+        self._amplitude = mirrored_amplitudes(on_grid)
         self._frames, self._sectors = on_grid.shape
         self._set_modes(series, found)
 
@@ -67,23 +68,26 @@ class WaveNull:
         used = self._used
         weights = mode_weights(series.lengths[used], ~self._missing[used], whole)
 
+        groups = edge_groups(whole)
+
         def levels(movies: FloatArray) -> Background:
-            return background(wave_cells(modes_of(movies, weights), found), found.frequencies)
+            return background(wave_cells(modes_of(movies, weights), found), found.frequencies, groups)
 
         wanted = levels(series.values[used][:, :, None])
         number = np.arange(self._amplitude.shape[0]) / (2.0 * self._frames * series.interval)
         low, high = found.frequencies[0], found.frequencies[-1]
         abscissa = np.log(number.clip(low, high)) - np.log(found.frequencies).mean()
-        level, slope = wanted.level[:, 0], wanted.slope[:, 0]
-        for step in range(_ROUNDS + 1):
+        level, slope = _smooth(wanted.level[:, 0]), _smooth(wanted.slope[:, 0])
+        wanted_level, wanted_slope = level, slope
+        for step in range(ROUNDS + 1):
             logs = level[:, None] + slope[:, None] * abscissa
-            logs = np.maximum(logs - logs.max(), _LEAST)
+            logs = np.maximum(logs - logs.max(), LEAST)
             last = logs[np.minimum(np.arange(half + 1), whole)]
             self._mode_gain = np.exp(0.5 * last).T  # (frequency, mode)
-            if step < _ROUNDS:
-                had = levels(self._drawn(_TRIALS))
-                level = level + np.clip(wanted.level[:, 0] - had.level.mean(axis=1), -2.0, 2.0)
-                slope = slope + np.clip(wanted.slope[:, 0] - had.slope.mean(axis=1), -1.0, 1.0)
+            if step < ROUNDS:
+                had = levels(self._drawn(TRIALS))
+                level = level + np.clip(wanted_level - had.level.mean(axis=1), -2.0, 2.0)
+                slope = slope + np.clip(wanted_slope - had.slope.mean(axis=1), -1.0, 1.0)
 
     def _drawn(self, count: int) -> FloatArray:
         noise = self._random.standard_normal((count, 2 * self._frames, self._sectors))
@@ -96,13 +100,13 @@ class WaveNull:
         return np.asarray(np.moveaxis(drawn[:, self._used], 0, 2))
 
 
-def _slots(series: EdgeSeries) -> IntArray:
+def frame_slots(series: EdgeSeries) -> IntArray:
     """Place of each frame on an even grid; frames of uneven movies that would share one follow each other."""
     slots = np.round((series.seconds - series.seconds[0]) / series.interval).astype(np.int64)
     return slots if (np.diff(slots) > 0).all() else np.arange(len(slots))
 
 
-def _amplitudes(series: FloatArray) -> FloatArray:
+def mirrored_amplitudes(series: FloatArray) -> FloatArray:
     """Amplitudes (T + 1, S) of spectra of series (T, S) with their mirror images.
 
     The fine shape is the mean of all sectors', the broad shape each sector's own: a single spectrum is so
@@ -117,3 +121,9 @@ def _amplitudes(series: FloatArray) -> FloatArray:
     mean = gaussian_filter1d(power.mean(axis=1), _FINE, mode="nearest")
     shape = broad / np.where(broad.mean(axis=1) > 0, broad.mean(axis=1), 1.0)[:, None]
     return np.asarray(np.sqrt(mean[:, None] * shape))
+
+
+def _smooth(by_mode: FloatArray) -> FloatArray:
+    """Levels that change little from mode to mode, as those of neighbours that are alike do."""
+    whole = np.concatenate([by_mode[:0:-1], by_mode])  # modes below 0 are their mirror images
+    return np.asarray(gaussian_filter1d(whole, SMOOTH, mode="nearest")[len(by_mode) - 1 :])
