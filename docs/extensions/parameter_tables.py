@@ -19,6 +19,7 @@ from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.population.population_parameters import PopulationParameters
 from cytodisk.runs.population.power.power_parameters import PowerParameters
+from cytodisk.runs.predict.predict_parameters import PredictParameters
 from cytodisk.runs.run_options import BatchOptions, MapOptions, RunOptions
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 from cytodisk.runs.waves.wave_run_parameters import WavesParameters
@@ -31,6 +32,7 @@ MODELS: dict[str, type[Parameters]] = {
     "cytodisk map": MapParameters,
     "cytodisk movie": MovieParameters,
     "cytodisk correlate": CorrelateParameters,
+    "cytodisk predict": PredictParameters,
     "cytodisk waves": WavesParameters,
     "cytodisk shapes": ShapeParameters,
     "cytodisk compare-windows": CompareWindowsParameters,

@@ -13,6 +13,7 @@ from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.map.map_kind import MAP
 from cytodisk.runs.movie.movie_kind import MOVIE
 from cytodisk.runs.population.population_kind import POPULATION
+from cytodisk.runs.predict.prediction_columns import PREDICTION_TABLES
 from cytodisk.runs.shapes.shape_tables import SHAPE_STUDY
 from cytodisk.runs.waves.waves_columns import WAVE_TABLES
 from cytodisk.store.study_kind import StudyKind
@@ -51,6 +52,12 @@ def write_page(app: Sphinx, _config: Any) -> None:
         "Correlations",
         "``cytodisk correlate`` writes these tables into ``correlation/SIGNAL~WITH/``.",
         CORRELATION_TABLES,
+    )
+    lines += run(
+        "Predictions",
+        "``cytodisk predict`` writes these tables into ``prediction/SOURCE~TARGET/`` or "
+        "``prediction/network/``.",
+        PREDICTION_TABLES,
     )
     lines += run(
         "Waves",

@@ -25,6 +25,7 @@ COMMANDS: dict[str, tuple[Callable[..., Any], tuple[type[Parameters], ...]]] = {
     "movie": (cd.run_movie, (cd.MovieParameters, cd.RunOptions)),
     "shapes": (cd.run_shapes, (cd.ShapeParameters, cd.RunOptions)),
     "correlate": (cd.run_correlate, (cd.CorrelateParameters,)),
+    "predict": (cd.run_predict, (cd.PredictParameters,)),
     "waves": (cd.run_waves, (cd.WavesParameters,)),
     "compare-windows": (
         cd.run_compare_windows,

@@ -14,6 +14,7 @@ _ELSEWHERE = {
     "report": "report.report_command",
     "population": "population.population_command",
     "export": "export.export_command",
+    "predict": "predict.predict_command",
     "waves": "waves.waves_command",
 }
 """Modules of commands that have none of their name beside this one."""

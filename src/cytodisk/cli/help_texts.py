@@ -84,6 +84,28 @@ Examples:
 
 Exit code: 0 when done (a cell that cannot be correlated has a row with the reason), 2 if none could be.
 """,
+    "predict": """Test whether one signal predicts another, in both directions, layer by layer.
+
+STUDY is the folder that cytodisk movie wrote. The question: does the past of the source make the error of
+predicting the target smaller than the target's own past, its neighbours' past, and the signals given do?
+Source to target and back are both tested. Without --source and --target all channels and velocity are tested
+against each other, each pair with all others given: a network. Tables and figures go to
+STUDY/prediction/SOURCE~TARGET or STUDY/prediction/network.
+
+Predicting is what a cause would do, but no proof of one: a common driver that is not given does it, too.
+
+Examples:
+
+  cytodisk predict out/ --source Rac1 --target velocity
+
+  cytodisk predict out/ --source Rac1 --target velocity --given RhoA --name given_RhoA
+
+  cytodisk predict out/
+
+  cytodisk predict out/ --source Rac1 --target RhoA --max-order 12 --surrogates 1999 --format pdf,png
+
+Exit code: 0 when done (a cell in which nothing can be tested has a row with the reason), 2 if none could be.
+""",
     "waves": """Do waves run along the edge of cells, or through a signal, and which way?
 
 STUDY is the folder that cytodisk movie wrote. Without --signal the velocity of the edge is looked at; with it

@@ -1,7 +1,8 @@
 """Whole figures written to files, and the report: functions return the paths of what they wrote.
 
 Studies: write_cell_figures and write_overview of masks, write_movie_figures, write_correlation_figures,
-write_shape_figures; write_animation, a cell beside its disk through time; write_report, one HTML page.
+write_prediction_figures, write_shape_figures; write_animation, a cell beside its disk through time;
+write_report, one HTML page.
 
 Populations: write_population_figures, write_power_figure.
 

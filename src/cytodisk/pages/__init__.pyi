@@ -4,6 +4,7 @@
 from .cell_pages import write_cell_figures as write_cell_figures
 from .movie_pages import write_movie_figures as write_movie_figures
 from .correlation_files import write_correlation_figures as write_correlation_figures
+from .prediction.prediction_files import write_prediction_figures as write_prediction_figures
 from .waves.wave_files import write_wave_figures as write_wave_figures
 from .shape_pages import write_shape_figures as write_shape_figures
 from .overview import write_overview as write_overview

@@ -17,6 +17,9 @@ edge; draw_by_layer for lines of layers.
 Correlations: draw_correlation_curves with curve_key, draw_map_pair, draw_pairs; PeakMap for
 draw_peaks_on_cell and draw_peaks_on_disk with peak_key; draw_events, draw_event_average with band_key.
 
+Predictions: draw_network with draw_link_layers and network_key; draw_gain_profile with gain_key;
+draw_lag_coefficients.
+
 Waves: draw_wave_kymograph with crests, draw_wave_phase, draw_phase_on_cell and draw_phase_on_disk with
 phase_key; draw_mode_power and draw_wave_spectrum by number around the cell; draw_depth_speeds.
 

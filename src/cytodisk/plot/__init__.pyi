@@ -48,6 +48,14 @@ from .correlation.event_curves import draw_events as draw_events
 from .correlation.event_curves import draw_event_average as draw_event_average
 from .correlation.event_curves import band_key as band_key
 
+# Predictions
+from .prediction.network_picture import draw_network as draw_network
+from .prediction.network_picture import network_key as network_key
+from .prediction.link_layers import draw_link_layers as draw_link_layers
+from .prediction.gain_profile import draw_gain_profile as draw_gain_profile
+from .prediction.gain_profile import gain_key as gain_key
+from .prediction.lag_coefficients import draw_lag_coefficients as draw_lag_coefficients
+
 # Waves
 from .waves.wave_kymograph import draw_wave_kymograph as draw_wave_kymograph
 from .waves.wave_kymograph import draw_wave_phase as draw_wave_phase

@@ -55,7 +55,9 @@ def test_values_are_those_of_predict(study: MadeStudy, pair: Prediction) -> None
         np.testing.assert_allclose(rows[name], found[name], err_msg=name)
     lags = of(pair.lags[(pair.lags["cell"] == 1) & (pair.lags["layer"] == 0)], "Rac1", "velocity")
     known = found["coefficient"].sel(layer=0).dropna("lag")
-    np.testing.assert_allclose(lags["coefficient"], known)
+    scale = found["effect"].sel(layer=0) / known.sum()  # to series of standard deviation 1
+    np.testing.assert_allclose(lags["coefficient"], known * scale)
+    assert lags["coefficient"].sum() == pytest.approx(rows["effect"].iloc[0])
     assert lags["lag_s"].tolist() == (5.0 * known["lag"]).to_numpy().tolist()
     assert (lags["low"] < lags["coefficient"]).all()
 

@@ -92,7 +92,7 @@ def pooled_finding(study: Study, found: Prediction) -> Finding | None:
     head = f"Over {counted(len(cells), 'cell')}: "
     return Finding(
         "found" if size else "nothing",
-        (f"{head}{'. '.join(capital(words) for words in told)}.", _given_words(found, by_cell[cells[0]])),
+        (f"{head}{'. '.join(_begun(words) for words in told)}.", _given_words(found, by_cell[cells[0]])),
         size=size,
     )
 
@@ -134,7 +134,7 @@ def _pair(study: Study, found: Prediction, ways: list[Direction]) -> list[str]:
     variant = f" ({found.name})" if found.name else ""
     last = _given_words(found, ways)
     second = f"The other way round, {second}{_compared(there, back)}."
-    return [f"{capital(first)}{variant}.", second, last]
+    return [f"{_begun(first)}{variant}.", second, last]
 
 
 def _direction(study: Study, way: Direction) -> str:
@@ -247,6 +247,11 @@ def _untested(study: Study, found: Prediction, ways: list[Direction]) -> str:
             where = layer_name(study, int(best["layer"]))
             parts.append(f"{_arrow(way)} {less_error(best['gain'])} in {where}")
     return f"Largest gains, not compared with chance (--surrogates 0): {'; '.join(parts)}."
+
+
+def _begun(words: str) -> str:
+    """Words at the start of a sentence."""
+    return f"Edge{words[4:]}" if words.startswith("edge velocity") else capital(words)
 
 
 def _least(q: float) -> str:

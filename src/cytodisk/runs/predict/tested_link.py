@@ -91,7 +91,9 @@ class TestedLink:
         if self.raw is None:
             return pd.DataFrame()
         names = {"coefficient": "coefficient", "coefficient_low": "low", "coefficient_high": "high"}
-        found = self.raw[list(names)].rename(names).reset_coords(drop=True)
+        total = self.raw["coefficient"].sum("lag")
+        scale = self.raw["effect"] / total.where(total != 0)  # to series of standard deviation 1
+        found = (self.raw[list(names)] * scale).rename(names).reset_coords(drop=True)
         table = found.to_dataframe(dim_order=["layer", "lag"]).reset_index()
         table = table[table["coefficient"].notna()].reset_index(drop=True)
         lag_s = table["lag"] * interval_s if interval_s is not None else np.nan
