@@ -44,6 +44,7 @@ FUNCTIONS = (
     cd.map_to_disk,
     cd.polar_windows,
     cd.edge_windows,
+    cd.spring_windows,
     cd.ring_windows,
     cd.nucleus_ring_windows,
     cd.interpolated_ring_windows,

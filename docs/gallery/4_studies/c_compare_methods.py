@@ -34,7 +34,7 @@ tifffile.imwrite(folder / "labels.tif", labels)
 
 command = (
     "compare-windows labels.tif -o out --layers 8 --sectors 40 "
-    "--methods newton,harmonic,edge"
+    "--methods newton,harmonic,edge,springs"
 )
 done = subprocess.run(
     [sys.executable, "-m", "cytodisk", *command.split(), "--quiet"],
@@ -55,7 +55,7 @@ print(by_method.T.to_string())
 by_layer = pd.read_csv(folder / "out" / "comparison.csv")
 figure, ax = plt.subplots(figsize=(4.4, 2.6), layout="constrained")
 for (method, table), style in zip(
-    by_layer.groupby("method", sort=False), ("o-", "^:", "s--"), strict=True
+    by_layer.groupby("method", sort=False), ("o-", "^:", "s--", "d-."), strict=True
 ):
     ax.plot(
         table["layer"], 100 * table["completeness"], style, markersize=3, label=method
@@ -65,6 +65,40 @@ ax.legend(frameon=False)
 plt.show()
 
 # %%
-# The command draws this, too. With ``--movie`` it compares how well windows keep their
-# position over time.
+# The command draws this, too.
 print(*sorted(file.name for file in (folder / "out" / "figures").iterdir()), sep="\n")
+
+# %%
+# With ``--movie`` it compares how well windows keep their position over time. There
+# ``springs`` follow the edge by line tension of their own, and ``registered`` carries the
+# windows of the first frame to the others by a nonrigid registration of the masks.
+truth = cd.simulate.movie("bulging", seed=3, frames=6, radius_px=16.0)
+options = {"photometric": "minisblack"}
+tifffile.imwrite(folder / "masks.tif", truth.masks.astype(np.uint8), **options)
+names = list(truth.signal["channel"].values)
+axes = {"axes": "TCYX", "Channel": {"Name": names}}
+tifffile.imwrite(
+    folder / "signal.ome.tif", truth.signal.to_numpy(), metadata=axes, **options
+)
+movie = cd.run_compare_windows(
+    folder / "masks.tif",
+    folder / "movie",
+    signal=folder / "signal.ome.tif",
+    movie=True,
+    methods=("newton", "edge", "springs", "registered"),
+    layers=5,
+    sectors=24,
+)
+columns = ["method", "completeness", "coverage", "folded", "carried_outside"]
+print(movie.by_method[columns].round(3).to_string(index=False))
+
+# %%
+# How far windows move from a frame to the next, and how alike their signal stays:
+# medians over frames of the mean over layers.
+rows = movie.through_time
+rows = rows[rows["layer"].isna()]
+print(
+    rows[["method", "channel", "correlation", "centroid_displacement"]]
+    .round(3)
+    .to_string(index=False)
+)
