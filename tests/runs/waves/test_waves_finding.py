@@ -43,6 +43,8 @@ USUAL: dict[str, Any] = {
     "jitter": 0.0,
     "restarts": 0,
     "geometry_not_tested": "",
+    "inside": "",
+    "p_inside_partial": np.nan,
 }
 
 
@@ -93,12 +95,42 @@ def test_other_kinds_have_no_way(study: SeriesStudy) -> None:
     assert "clockwise" not in standing + whole
 
 
+SPIRAL: dict[str, Any] = {
+    "layer": 1,
+    "inside": "spiral",
+    "inside_way": "clockwise",
+    "inside_mode": 2,
+    "inside_period": 19.0,
+    "inward_speed": 0.05,
+    "p_inside": 0.01,
+    "inside_order": 5.0,
+}
+
+
 def test_a_signal_has_its_layer_and_what_it_does_inside(study: SeriesStudy) -> None:
-    inside = {"layer": 1, "inside": "inwards", "inward_speed": 0.05, "p_inside": 0.01}
-    words = told(study, made(inside, signal="Rac1")).words
+    words = told(study, made(SPIRAL, signal="Rac1")).words
     assert words.startswith("Waves of Rac1 run around in layer 1 of cell 0: 2 waves")
-    assert "Inside the cell they run inwards at 50 nm/s (p = 0.01)." in words
-    assert "Inside" not in told(study, made(inside | {"p_inside": 0.4}, signal="Rac1")).words
+    assert "Through all layers crests run as a spiral, clockwise and inwards at 50 nm/s (p = 0.01)." in words
+    out = SPIRAL | {"inside": "outwards", "inward_speed": -0.05}
+    assert "crests run outwards at 50 nm/s" in told(study, made(out, signal="Rac1")).words
+    around = SPIRAL | {"inside": "around", "inward_speed": np.nan}
+    assert "All layers take part: crests run around" in told(study, made(around, signal="Rac1")).words
+    assert "layers" not in told(study, made(SPIRAL | {"inside": "none"}, signal="Rac1")).words
+
+
+def test_a_wave_that_only_all_layers_show_is_no_nothing(study: SeriesStudy) -> None:
+    row = SPIRAL | {"kind": "none", "way": "", "p": 0.2, "p_inside_partial": 0.01}
+    found = told(study, made(row, signal="Rac1"))
+    assert found.kind == "found"
+    assert found.words.startswith(
+        "Waves of Rac1 run through all layers of cell 0: 2 waves around the cell, period 95 s, p = 0.01."
+    )
+    assert "By itself layer 1 shows none beyond chance (p = 0.2)." in found.words
+    gone = made(row | {"p_inside_partial": 0.5}, signal="Rac1")
+    assert told(study, gone).kind == "doubtful"
+    (flag,) = wave_flags_of(with_waves(study, gone))
+    assert flag.name == "waves of the cell's motion"
+    assert flag.places[0].note == "Rac1: all layers: p = 0.01, without the cell's motion 0.5"
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,8 @@ from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.settings_words import scope_words
 from cytodisk.pages.sheet import BOLD_MM, broken_lines
 from cytodisk.plot.layer_looks import layer_word
-from cytodisk.runs.findings.wave_words import chance_words, wave_numbers
+from cytodisk.runs.findings.wave_words import chance_words, speed_words, time_words, wave_numbers
+from cytodisk.runs.qc_flags.wave_doubts import has_inside
 from cytodisk.store.waves.waves_store import Waves
 
 
@@ -49,6 +50,11 @@ class DrawnWaves:
     def there(self) -> bool:
         """Whether there is a wave beyond chance."""
         return bool(self.row["kind"] != "none")
+
+    @property
+    def inside(self) -> bool:
+        """Whether there is a wave through all layers beyond chance."""
+        return has_inside(self.row)
 
     @property
     def layer(self) -> int | None:
@@ -109,10 +115,11 @@ class DrawnWaves:
         if self.layer is None:
             return rows.sort_values("sector")["phase"].to_numpy(dtype=np.float64)
         table = np.full((self.movie.grid.layers, self.movie.grid.sectors), np.nan)
-        table[rows["layer"].astype(int), rows["sector"].astype(int)] = rows["phase"]
+        column = "phase_inside" if self.inside else "phase"
+        table[rows["layer"].astype(int), rows["sector"].astype(int)] = rows[column]
         return table
 
-    def heading(self, width_mm: float, what: str, *notes: str) -> Heading:
+    def heading(self, width_mm: float, what: str, *notes: str, inside: bool = False) -> Heading:
         """What a page shows; below it the wave in numbers, the cell and its windows.
 
         Parameters
@@ -122,8 +129,11 @@ class DrawnWaves:
         what : str
         *notes : str
             More to say below it.
+        inside : bool
+            The numbers are those of the wave through all layers.
         """
-        facts = [*self._wave_words(), f"cell {self.movie.cell}", grid_words(self.movie.grid)]
+        own = self._inside_words() if inside else self._wave_words()
+        facts = [*own, f"cell {self.movie.cell}", grid_words(self.movie.grid)]
         facts += [f"{len(self.frames)} frames", *scope_words(self.waves.settings), *notes]
         if self.waves.name:
             facts.append(f"“{self.waves.name}”")
@@ -136,3 +146,16 @@ class DrawnWaves:
             return [f"no waves beyond chance, {chance}"]
         parts = wave_numbers(row, self.movie.scale).split(", ")
         return [f"{row['kind']} wave", *parts, chance]
+
+    def _inside_words(self) -> list[str]:
+        row, scale = self.row, self.movie.scale
+        if not self.inside:
+            return [f"no wave through all layers beyond chance, p = {row['p_inside']:.2g}"]
+        way = str(row["inside_way"] or "")
+        words = [f"wave through all layers: {row['inside']}{', ' * bool(way)}{way}"]
+        if np.isfinite(row["inward_speed"]):
+            out = "outwards" if row["inward_speed"] < 0 else "inwards"
+            words.append(f"{speed_words(row['inward_speed'], scale, row['frames'])} {out}")
+        if np.isfinite(row["around_speed"]):
+            words.append(f"{speed_words(row['around_speed'], scale, row['frames'])} around")
+        return [*words, f"period {time_words(row['inside_period'], scale)}", f"p = {row['p_inside']:.2g}"]

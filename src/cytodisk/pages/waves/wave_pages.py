@@ -29,6 +29,7 @@ _PHASES = 4  # frames of one period
 _DEPTH_LEFT, _DEPTH, _DEPTH_HEIGHT = 16.0, 62.0, 34.0  # mm
 _PERIODS_SHOWN = 4.0  # times the frequency that was found are the highest that are drawn
 _LINE = 3.6  # mm
+_WAYS = {"clockwise": 1, "anticlockwise": -1}
 
 
 def kymograph_page(one: DrawnWaves) -> Sheet:
@@ -103,10 +104,12 @@ def _found_in_spectrum(one: DrawnWaves, seconds: bool) -> tuple[int, float] | No
 
 def phase_page(one: DrawnWaves) -> Sheet | None:
     """The phase on the cell and on the disk at four times of one period; None without a wave."""
-    frames = _frames_of_period(one) if one.there else []
+    frames = _frames_of_period(one) if one.there or one.inside else []
     if not frames:
         return None
-    heading = one.heading(WIDE_MM, f"phase of {one.signal_name} through one period")
+    what = "all layers" if one.inside else "each layer its own wave"
+    title = f"phase of {one.signal_name} through one period"
+    heading = one.heading(WIDE_MM, title if one.by_velocity else f"{title}, {what}", inside=one.inside)
     windows = [one.movie.windows(frame) for frame in frames]
     extent = field_of_view([each.disk.outline_yx for each in windows])
     tall = (extent[1] - extent[0]) / (extent[3] - extent[2])
@@ -124,7 +127,7 @@ def phase_page(one: DrawnWaves) -> Sheet | None:
         _one_scale_bar(cell, one, place)
         sheet.text(left + 0.5 * _PANEL, top - 1.2, _time(one, frame), ha="center")
         disk = sheet.axes(left, below, _PANEL, _PANEL)
-        way = {"clockwise": 1, "anticlockwise": -1}.get(str(one.row["way"] or ""), 0)
+        way = _WAYS.get(str(one.row["inside_way" if one.inside else "way"] or ""), 0)
         draw_phase_on_disk(disk, one.movie.disk_grid, phase, way=way, number_sectors=True)
     key = sheet.axes(LEFT_MM + 4.0 + len(frames) * (_PANEL + _PANEL_GAP), top, 2.0, below + _PANEL - top)
     phase_key(key)
@@ -151,7 +154,7 @@ def _one_scale_bar(cell: Axes, one: DrawnWaves, place: int) -> None:
 def _frames_of_period(one: DrawnWaves) -> list[int]:
     """Frames with a map a quarter of a period apart, in the middle of the movie; none if too few have one."""
     mapped = np.array(sorted(set(one.movie.mapped) & set(one.frames)))
-    period = float(one.row["period"])
+    period = float(one.row["inside_period" if one.inside else "period"])
     if mapped.size < _PHASES or not math.isfinite(period):
         return []
     middle = mapped[mapped.size // 2]
@@ -166,7 +169,7 @@ def depths_page(one: DrawnWaves) -> Sheet | None:
     depths = None if table is None else table[table["cell"] == one.movie.cell]
     if depths is None or depths[["inward_speed", "around_speed"]].isna().all(axis=None):
         return None
-    heading = one.heading(SINGLE_COLUMN_MM, f"waves of {one.signal_name} by depth")
+    heading = one.heading(SINGLE_COLUMN_MM, f"waves of {one.signal_name} by depth", inside=True)
     top = heading.height_mm + _LINE
     sheet = Sheet(top + _DEPTH_HEIGHT + 9.0, SINGLE_COLUMN_MM)
     heading.write(sheet)
@@ -176,5 +179,6 @@ def depths_page(one: DrawnWaves) -> Sheet | None:
     unit = one.movie.scale.shown_velocity(fastest, len(one.frames))
     lines = draw_depth_speeds(ax, depths, speed=unit, length_unit=one.movie.scale.length_unit)
     key: Any = {"frameon": False, "ncols": 2, "loc": "lower left", "bbox_to_anchor": (0.0, 1.0)}
-    ax.legend(handles=lines, borderaxespad=0.1, borderpad=0.0, handlelength=2.4, **key)
+    shown = [line for line in lines if np.isfinite(np.asarray(line.get_ydata(), dtype=np.float64)).any()]
+    ax.legend(handles=shown, borderaxespad=0.1, borderpad=0.0, handlelength=2.4, **key)
     return sheet

@@ -65,12 +65,12 @@ def draw_depth_speeds(
     lines = []
     for name, look, words in (
         ("inward_speed", INWARD_LOOK, "inwards"),
-        ("around_speed", AROUND_LOOK, "around, clockwise"),
+        ("around_speed", AROUND_LOOK, "around, above 0 clockwise"),
     ):
         values = unit.factor * rows[name].to_numpy(dtype=np.float64)
         lines += ax.plot(rows["depth"].to_numpy(dtype=np.float64), values, label=words, **look, **common)
     ax.axhline(0.0, color=LINE_COLOUR, linewidth=0.4, zorder=0.5)
     ax.set(xlabel=f"depth below the edge ({length_unit})", ylabel=with_unit("speed", unit.name))
-    ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS, symmetric=True))
+    ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
     ax.xaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
     return lines

@@ -17,11 +17,11 @@ from cytodisk.runs.findings.wave_words import (
     course_words,
     period_words,
     speed_words,
+    time_words,
     wave_numbers,
     waves_around,
 )
-from cytodisk.runs.partial_words import SIGNIFICANT
-from cytodisk.runs.qc_flags.wave_doubts import wave_doubts
+from cytodisk.runs.qc_flags.wave_doubts import has_inside, wave_doubts
 from cytodisk.store.study import Study
 from cytodisk.store.waves.waves_store import Waves
 
@@ -49,7 +49,7 @@ def waves_finding(study: Study, found: Waves, cell: int, flagged: Sequence[str] 
         return None
     row = rows.iloc[0]
     if row["kind"] not in _KINDS:
-        return _nothing(study, found, row, flagged)
+        return (_inside_alone if has_inside(row) else _nothing)(study, found, row, flagged)
     doubts = wave_doubts(row)
     said = f"{_what(study, found, row)}: {wave_numbers(row, study.scale)}, {chance_words(row)}"
     sentences = [f"{said}{_but(doubts, flagged)}."]
@@ -140,15 +140,19 @@ def _but(doubts: Sequence[str], flagged: Sequence[str]) -> str:
 
 
 def _inside(study: Study, row: Any) -> str:
-    """What the waves do below the edge, where that is known and beyond chance."""
-    p = row.get("p_inside", math.nan)
-    way = str(row.get("inside") or "")
-    if not (way and p < SIGNIFICANT):
+    """What the wave through all layers does, as a sentence; empty where there is none."""
+    if not has_inside(row):
         return ""
-    if way not in ("inwards", "outwards") or not math.isfinite(row["inward_speed"]):
-        return f"Inside the cell they are {'standing' if way == 'standing' else 'running around, too'}."
-    speed = speed_words(row["inward_speed"], study.scale, row["frames"])
-    return f"Inside the cell they run {way} at {speed} (p = {p:.2g})."
+    p, frames = f"p = {row['p_inside']:.2g}", row["frames"]
+    if row["inside"] in ("inwards", "outwards", "spiral"):
+        way = "outwards" if row["inward_speed"] < 0 else "inwards"
+        speed = speed_words(row["inward_speed"], study.scale, frames)
+        known = f" at {speed}" if math.isfinite(row["inward_speed"]) else ""
+        spiral = f"as a spiral, {row['inside_way']} and " if row["inside"] == "spiral" else ""
+        return f"Through all layers crests run {spiral}{way}{known} ({p})."
+    if row["inside"] == "around":
+        return f"All layers take part: crests run around together, neither inwards nor outwards ({p})."
+    return f"All layers take part: crests run neither around nor inwards or outwards ({p})."
 
 
 def _one_around(found: Waves, row: Any) -> str:
@@ -167,6 +171,22 @@ def _others(found: Waves) -> str:
     ways = [_kind_words(row) for _, row in done[done["kind"].isin(_KINDS)].iterrows()]
     counts = listed([f"{ways.count(way)} {way}" for way in dict.fromkeys(ways)])
     return f"Waves in {len(ways)} of {counted(len(done), 'cell')} ({counts})."
+
+
+def _inside_alone(study: Study, found: Waves, row: Any, flagged: Sequence[str]) -> Finding:
+    """A wave that shows in all layers together, but not in the chosen one alone."""
+    doubts, signal = wave_doubts(row), channel_words(found.signal)
+    numbers = [waves_around(row["inside_mode"])] if row["inside_mode"] else []
+    numbers.append(f"period {time_words(row['inside_period'], study.scale)}")
+    words = (
+        f"Waves of {signal} run through all layers of cell {row['cell']}: {', '.join(numbers)}, "
+        f"p = {row['p_inside']:.2g}{_but(doubts, flagged)}.",
+        f"{_inside(study, row)} By itself {layer_name(study, int(row['layer']))} shows none beyond chance "
+        f"({chance_words(row)}).",
+        _others(found),
+    )
+    kind: Any = "doubtful" if doubts or flagged else "found"
+    return Finding(kind, words, size=float(row["inside_order"]))
 
 
 def _nothing(study: Study, found: Waves, row: Any, flagged: Sequence[str]) -> Finding:

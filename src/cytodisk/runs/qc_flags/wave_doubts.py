@@ -43,8 +43,10 @@ def doubts_of(row: Any) -> list[str]:
     """
     if row["status"] != "ok":
         return []
-    if row["kind"] == "none":
+    if row["kind"] == "none" and not has_inside(row):
         return [HIDING] if row["jitter"] >= JITTERING_SHARE else []
+    if row["kind"] == "none":
+        return _of_inside(row)
     slow = row["period"] > _SLOW * row["longest_period"]
     raised = {
         "few periods": row["period"] * NEAR_A_LIMIT > row["longest_period"],
@@ -55,6 +57,21 @@ def doubts_of(row: Any) -> list[str]:
         "cell's motion not tested": bool(row["geometry_not_tested"]),
     }
     return [name for name in WAVE_DOUBTS if raised[name]]
+
+
+def has_inside(row: Any) -> bool:
+    """Whether there is a wave through all layers."""
+    return str(row.get("inside") or "none") != "none"
+
+
+def _of_inside(row: Any) -> list[str]:
+    """Names of the QC flags of a wave that shows in all layers together alone."""
+    raised = {
+        "waves of the cell's motion": row["p_inside_partial"] >= SIGNIFICANT,
+        "waves over restarts": row["restarts"] > 0,
+        "cell's motion not tested": bool(row["geometry_not_tested"]),
+    }
+    return [name for name, is_raised in raised.items() if is_raised]
 
 
 def wave_doubts(row: Any) -> list[str]:
@@ -69,9 +86,13 @@ def wave_doubts(row: Any) -> list[str]:
         "few periods": f"the movie holds only {rounded(row['periods'], 2)} periods",
         "few frames a period": f"a period has only {rounded(row['period'], 2)} frames",
         "waves of the cell's motion": f"it is gone without what the motion of the cell alone gives "
-        f"(p = {row['p_partial']:.2g})",
+        f"(p = {_left(row):.2g})",
         "drifting waves": "the level of many series drifts",
         "waves over restarts": "tracking started anew, so that sectors need not be the same places",
         "cell's motion not tested": "what the motion of the cell alone would give was not tested",
     }
     return [words[name] for name in doubts_of(row) if name in words]
+
+
+def _left(row: Any) -> float:
+    return float(row["p_inside_partial" if row["kind"] == "none" else "p_partial"])

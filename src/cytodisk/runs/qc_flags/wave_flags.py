@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import pandas as pd
 
 from cytodisk.number_words import counted, rounded
+from cytodisk.runs.partial_words import SIGNIFICANT
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag
 from cytodisk.runs.qc_flags.wave_doubts import HIDING, doubts_of
 from cytodisk.store.study import Study
@@ -44,7 +46,7 @@ _SAID: dict[str, _Said] = {
         "A long cell that turns, or one that moves over a pattern that stands still, looks like a wave in "
         "its sectors.",
         "Do not count them as waves; look at the movie.",
-        lambda row: f"p = {row['p']:.2g}, without the cell's motion {row['p_partial']:.2g}",
+        lambda row: "; ".join(_with_and_without(row)),
     ),
     HIDING: _Said(
         "masks jitter where there are no waves beyond chance, in",
@@ -71,6 +73,13 @@ _SAID: dict[str, _Said] = {
         lambda row: str(row["geometry_not_tested"]),
     ),
 }
+
+
+def _with_and_without(row: Any) -> Iterator[str]:
+    """p of the layer's wave, and of that through all layers, with the cell's motion and without."""
+    for what, p, left in (("", "p", "p_partial"), ("all layers: ", "p_inside", "p_inside_partial")):
+        if row.get(left, math.nan) >= SIGNIFICANT:
+            yield f"{what}p = {row[p]:.2g}, without the cell's motion {row[left]:.2g}"
 
 
 def wave_doubt_flags(study: Study) -> Iterator[QCFlag]:

@@ -21,6 +21,7 @@ from cytodisk.runs.run_options import Progress
 from cytodisk.runs.used_series.cell_controls import CellControls
 from cytodisk.runs.used_series.progress_phases import phases
 from cytodisk.runs.waves.cell_wave_series import WaveSeries, used_series, wave_series
+from cytodisk.runs.waves.disk_rows import NOT_INSIDE, depth_table, disk_wave, inside_row
 from cytodisk.runs.waves.layer_waves import NO_WAVE, LayerWaves
 from cytodisk.runs.waves.wave_run_parameters import WavesParameters
 from cytodisk.store.study import Study
@@ -54,17 +55,20 @@ class CellWaves:
             Waves cannot be looked for in it.
         """
         series = wave_series(self.study, self.signal, cell, self.options)
-        steps = phases(progress, 1 + len(series.layers))
+        steps = phases(progress, 2 + len(series.layers))
         rows, tables = self._layers(series, steps)
         chosen = self._chosen(series)
-        not_tested = self._partial(cell, series, rows, steps[-1])
+        inside, whole = self._inside(series, steps[-2])
+        not_tested = self._partial(cell, series, rows, inside, steps[-1])
         row = rows[chosen] | {"layer": chosen} | self._of_cell(cell, series, chosen, rows[chosen])
-        row["geometry_not_tested"] = not_tested
         if rows[chosen]["status"] != "ok" and all(one["status"] != "ok" for one in rows.values()):
             raise ParameterError(rows[chosen]["reason"])
         layers = pd.DataFrame([{"layer": layer} | one for layer, one in rows.items()])
         found = {"layers": with_whole_numbers(layers), **tables}
-        return found, row
+        if whole is not None:
+            found["depths"] = depth_table(whole, series, self._looking)
+        found["phase"] = with_inside(found["phase"], whole)
+        return found, row | inside | {"geometry_not_tested": not_tested}
 
     @cached_property
     def _looking(self) -> LayerWaves:
@@ -99,6 +103,18 @@ class CellWaves:
             row["q"] = one
         return rows, {name: pd.concat(some, ignore_index=True) for name, some in parts.items() if some}
 
+    def _inside(
+        self, series: WaveSeries, progress: Progress | None
+    ) -> tuple[dict[str, Any], xr.Dataset | None]:
+        """The wave through all layers: its numbers, and what `disk_waves` gives."""
+        if len(series.layers) < 2:
+            return dict(NOT_INSIDE), None
+        try:
+            found = disk_wave(series, series.values, self._looking, progress)
+        except ParameterError as error:
+            return NOT_INSIDE | {"no_inside_because": str(error)}, None
+        return inside_row(found, self._looking), found
+
     def _of_cell(
         self, cell: int, series: WaveSeries, chosen: int | None, row: dict[str, Any]
     ) -> dict[str, Any]:
@@ -123,11 +139,13 @@ class CellWaves:
         cell: int,
         series: WaveSeries,
         rows: dict[int | None, dict[str, Any]],
+        inside: dict[str, Any],
         progress: Progress | None,
     ) -> str:
         """Look again for waves without what the cell's motion gives; why not, if that cannot be done."""
         waving = [layer for layer, row in rows.items() if row["kind"] != "none"]
-        if not (self.options.geometry and waving) or self.signal == _CELL_FRAME:
+        through = inside["inside"] not in ("", "none")
+        if not (self.options.geometry and (waving or through)) or self.signal == _CELL_FRAME:
             return ""
         if self.signal in VELOCITIES and rows[None]["mode"] == 1:
             return ""  # one wave around is a motion of the whole cell: without that nothing can be left
@@ -135,7 +153,9 @@ class CellWaves:
         if self.signal in VELOCITIES:
             left, why = series.activity[_CELL_FRAME].transpose("time", "sector").load(), ""
         else:
-            left, why = self._without_geometry(cell, series, _lag(rows, waving), progress)
+            periods = [rows[layer]["period"] for layer in waving]
+            longest = max([*periods, inside["inside_period"]] if through else periods)
+            left, why = self._without_geometry(cell, series, _lag(longest), progress)
         if left is None:
             return why
         for layer in waving:
@@ -146,6 +166,11 @@ class CellWaves:
                 why = str(error)
                 continue
             rows[layer] |= {"order_partial": again["order"], "p_partial": again["p"]}
+        if through:
+            try:
+                inside["p_inside_partial"] = float(disk_wave(series, left, self._looking)["p"])
+            except ParameterError as error:
+                why = str(error)
         return why
 
     def _without_geometry(
@@ -166,12 +191,26 @@ class CellWaves:
         return left, found.not_tested
 
 
-def _lag(rows: dict[int | None, dict[str, Any]], waving: list[int | None]) -> int:
-    """Frames around one that the mean in the lab leaves out: the longest period, within limits."""
-    return int(max(1, min(_LONGEST_LAG, max(rows[layer]["period"] for layer in waving))))
+def _lag(period: float) -> int:
+    """Frames around one that the mean in the lab leaves out: a period, within limits."""
+    return int(max(1, min(_LONGEST_LAG, period)))
+
+
+def with_inside(phase: pd.DataFrame, whole: xr.Dataset | None) -> pd.DataFrame:
+    """The table of phases with that of the wave through all layers, where there is one."""
+    if whole is None:
+        return phase.assign(phase_inside=math.nan)
+    values = whole["phase"].transpose("time", "layer", "sector")
+    frames = {int(frame): place for place, frame in enumerate(values["frame"].to_numpy())}
+    places = (
+        phase["frame"].map(frames).to_numpy(dtype=np.int64),
+        phase["layer"].to_numpy(dtype=np.int64),
+        phase["sector"].to_numpy(dtype=np.int64),
+    )
+    return phase.assign(phase_inside=values.to_numpy()[places])
 
 
 def with_whole_numbers(table: pd.DataFrame) -> pd.DataFrame:
     """The table with columns of whole numbers that may be empty as such."""
-    names = [name for name in ("layer", "mode") if name in table]
+    names = [name for name in ("layer", "mode", "inside_mode") if name in table]
     return table.astype(dict.fromkeys(names, "Int64"))

@@ -16,7 +16,6 @@ from cytodisk.arrays import FloatArray
 from cytodisk.runs.run_options import Progress
 from cytodisk.runs.waves.cell_wave_series import WaveSeries
 from cytodisk.runs.waves.wave_run_parameters import WavesParameters
-from cytodisk.runs.waves.wave_spectrum_table import spectrum_table
 from cytodisk.scale import Scale
 
 NO_WAVE: dict[str, Any] = {
@@ -44,14 +43,6 @@ NO_WAVE: dict[str, Any] = {
     ),
 }
 """The row of a layer of which nothing is known."""
-
-NOT_INSIDE: dict[str, Any] = {
-    "inside": "",
-    "inward_speed": math.nan,
-    "around_speed": math.nan,
-    "p_inside": math.nan,
-}
-"""Of what has no inside, as the edge's velocity, or of one layer."""
 
 
 @dataclass(frozen=True)
@@ -129,13 +120,28 @@ class LayerWaves:
 
     def tables(self, series: WaveSeries, layer: int | None, found: xr.Dataset) -> dict[str, pd.DataFrame]:
         """Power by mode, spectrum and phase of a layer."""
-        spectrum = spectrum_table(series.of(layer).to_numpy())
-        hertz = spectrum["frequency"] / self.step
-        spectrum = spectrum.assign(frequency_hz=hertz if self.scale.frame_interval_s else math.nan)
-        tables = {"modes": _modes(found), "spectrum": spectrum, "phase": self._phase(series, found)}
+        tables = {
+            "modes": _modes(found),
+            "spectrum": self._spectrum(found),
+            "phase": self._phase(series, found),
+        }
         for table in tables.values():
             table.insert(0, "layer", pd.Series([layer] * len(table), table.index, dtype="Int64"))
         return tables
+
+    def _spectrum(self, found: xr.Dataset) -> pd.DataFrame:
+        """Power by mode, with its direction, and frequency."""
+        table = found["spectrum"].to_series().reset_index()
+        hertz = table["frequency"]
+        known = self.scale.frame_interval_s is not None
+        return pd.DataFrame(
+            {
+                "mode": table["travelling"],
+                "frequency": hertz * self.step,
+                "frequency_hz": hertz if known else math.nan,
+                "power": table["spectrum"],
+            }
+        )
 
     def _phase(self, series: WaveSeries, found: xr.Dataset) -> pd.DataFrame:
         phase, amplitude = (
@@ -156,9 +162,9 @@ class LayerWaves:
 
 
 def _modes(found: xr.Dataset) -> pd.DataFrame:
-    power = found["power"].to_numpy()
-    threshold = found["threshold"].to_numpy() if "threshold" in found else np.full(power.shape, np.nan)
-    return pd.DataFrame({"mode": np.arange(power.size), "power": power, "threshold": threshold})
+    columns = {"power": "power", "threshold": "power_threshold"}
+    values = {name: found[variable].to_numpy() for name, variable in columns.items()}
+    return pd.DataFrame({"mode": found["around"].to_numpy(), **values})
 
 
 def _way(direction: float) -> str:

@@ -74,11 +74,30 @@ _STATUS: Columns = (
     Column("reason", pa.string(), "", "why it was left out; empty if it was not"),
 )
 
+_INWARD = Column("inward_speed", pa.float64(), "velocity", "speed towards the inside; negative: outwards")
+_AROUND = Column("around_speed", pa.float64(), "velocity", f"speed around the cell, {_CLOCKWISE}")
+
 _INSIDE: Columns = (
-    Column("inside", pa.string(), "", "inwards, outwards, around or standing; empty if not known"),
-    Column("inward_speed", pa.float64(), "velocity", "speed of the wave towards the inside"),
-    Column("around_speed", pa.float64(), "velocity", f"speed of the wave around the cell, {_CLOCKWISE}"),
+    Column(
+        "inside",
+        pa.string(),
+        "",
+        "what the wave through all layers does: inwards, outwards, around, spiral (around, and in or out), "
+        "standing or none; empty for velocity",
+    ),
+    Column(
+        "inside_way", pa.string(), "", "clockwise or anticlockwise as seen in the image; empty if neither"
+    ),
+    Column("inside_mode", pa.int64(), "", "number of its waves around the cell"),
+    Column("inside_period", pa.float64(), "frame", "its time from crest to crest, in frames"),
+    _INWARD._replace(meaning="its speed towards the inside, negative outwards; empty if it runs neither way"),
+    _AROUND._replace(meaning=f"its speed along the edge, {_CLOCKWISE}; empty if it does not run around"),
+    Column("inside_order", pa.float64(), "1", "order score of the wave through all layers"),
+    Column("p_inside", pa.float64(), "1", "its p"),
+    Column("p_inside_partial", pa.float64(), "1", "its p without what the motion of the cell alone gives"),
+    Column("no_inside_because", pa.string(), "", "why it could not be looked for; empty if it was"),
 )
+"""The wave through all layers of a signal at once."""
 
 WAVE_TABLES: dict[str, Columns] = {
     "cells": (
@@ -88,7 +107,6 @@ WAVE_TABLES: dict[str, Columns] = {
         _LAYER._replace(meaning="layer that the numbers are of; empty for the edge's velocity"),
         *WAVE_COLUMNS,
         *_INSIDE,
-        Column("p_inside", pa.float64(), "1", "p of the direction inside; empty if it was not looked at"),
         Column("frames", pa.int64(), "", "frames that were used"),
         Column("periods", pa.float64(), "1", "how many periods the movie holds"),
         Column("edge_length", pa.float64(), "length", "length of the edge, median over frames"),
@@ -113,7 +131,9 @@ WAVE_TABLES: dict[str, Columns] = {
         CELL,
         _LAYER,
         _MODE,
-        Column("power", pa.float64(), "1", "share of the power that is in this mode"),
+        Column(
+            "power", pa.float64(), "1", "share of the variance that is in this mode, at periods looked for"
+        ),
         Column("threshold", pa.float64(), "1", "share that 5 % of the surrogates exceed"),
     ),
     "spectrum": (
@@ -122,7 +142,7 @@ WAVE_TABLES: dict[str, Columns] = {
         _MODE._replace(meaning=f"number of waves around the cell, {_CLOCKWISE}; 0: the whole edge at once"),
         Column("frequency", pa.float64(), "1/frame", "frequency in periods a frame"),
         Column("frequency_hz", pa.float64(), "1/s", "the same a second; empty if the interval is unknown"),
-        Column("power", pa.float64(), "1", "share of the power of the layer"),
+        Column("power", pa.float64(), "1", "share of the layer's variance"),
     ),
     "phase": (
         CELL,
@@ -132,11 +152,26 @@ WAVE_TABLES: dict[str, Columns] = {
         SECTOR,
         Column("phase", pa.float64(), "rad", "phase of the wave: 0 at a crest, π where it is lowest"),
         Column("amplitude", pa.float64(), "", "half the way from lowest to crest, in the signal's unit"),
+        Column(
+            "phase_inside",
+            pa.float64(),
+            "rad",
+            "phase of the wave through all layers at once; empty for velocity",
+        ),
     ),
     "depths": (
         CELL,
         LAYER,
         Column("depth", pa.float64(), "length", "median depth of the layer's windows below the edge"),
-        *_INSIDE,
+        Column("lag", pa.float64(), "frame", "by how much the wave is later than in the first layer"),
+        Column("lag_s", pa.float64(), "s", "the lag in seconds; empty if the frame interval is unknown"),
+        _INWARD._replace(
+            meaning="speed of the wave from layer to layer, positive inwards; empty if it runs neither way"
+        ),
+        _AROUND._replace(
+            meaning=f"speed along the layer, {_CLOCKWISE}; empty if the wave does not run around"
+        ),
+        Column("direction", pa.float64(), "1", "as in layers.parquet, of the wave through all layers"),
+        Column("power", pa.float64(), "1", "share of the wave's variance that is in this layer"),
     ),
 }

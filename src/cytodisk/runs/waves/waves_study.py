@@ -13,7 +13,8 @@ from cytodisk.runs.run_options import Progress
 from cytodisk.runs.used_series.progress_phases import percents
 from cytodisk.runs.versions import installed
 from cytodisk.runs.waves.cell_waves import CellWaves, with_whole_numbers
-from cytodisk.runs.waves.layer_waves import NO_WAVE, NOT_INSIDE
+from cytodisk.runs.waves.disk_rows import NOT_INSIDE
+from cytodisk.runs.waves.layer_waves import NO_WAVE
 from cytodisk.runs.waves.wave_run_parameters import WavesParameters
 from cytodisk.runs.waves.waves_columns import WAVE_TABLES
 from cytodisk.store.study import Study
