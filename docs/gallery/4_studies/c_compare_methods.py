@@ -70,8 +70,8 @@ print(*sorted(file.name for file in (folder / "out" / "figures").iterdir()), sep
 
 # %%
 # With ``--movie`` it compares how well windows keep their position over time. There
-# ``springs`` follow the edge by line tension of their own, and ``registered`` carries the
-# windows of the first frame to the others by a nonrigid registration of the masks.
+# ``springs`` follow the edge by line tension of their own, and ``registered`` carries
+# the windows of the first frame to the others by a registration of the masks.
 truth = cd.simulate.movie("bulging", seed=3, frames=6, radius_px=16.0)
 options = {"photometric": "minisblack"}
 tifffile.imwrite(folder / "masks.tif", truth.masks.astype(np.uint8), **options)
