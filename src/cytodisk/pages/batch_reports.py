@@ -14,8 +14,8 @@ from cytodisk.errors import CytodiskError, MissingPartError, StudyError
 from cytodisk.pages.report.page import REPORT, write_report
 from cytodisk.pages.report.template import jinja
 from cytodisk.runs.population.opening.found_studies import FoundStudy, find_studies
-from cytodisk.store.correlation_store import CORRELATION
 from cytodisk.store.provenance_file import read_provenance
+from cytodisk.store.results.study_results import DERIVED
 from cytodisk.store.study import open_study
 from cytodisk.store.study_kind import CELLS
 from cytodisk.store.tables import read_table
@@ -113,11 +113,12 @@ def _page_of(study: FoundStudy, folder: Path, resume: bool) -> dict[str, Any]:
 
 
 def _is_young(study: Path) -> bool:
-    """Whether a study's page is whole, and written after its tables and correlations."""
+    """Whether a study's page is whole, and written after its tables and what was computed from them."""
     own = {REPORT: recorded(read_provenance(study) or {}).get(REPORT, "")}
     if not own[REPORT] or lost_files(study, own):
         return False
-    sources = [study / CELLS, *(study / CORRELATION).glob("*/settings.json")]
+    settings = [file for folder in DERIVED for file in (study / folder).glob("*/settings.json")]
+    sources = [study / CELLS, *settings]
     written = (study / REPORT).stat().st_mtime_ns
     return all(file.stat().st_mtime_ns <= written for file in sources)
 

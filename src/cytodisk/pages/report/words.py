@@ -34,6 +34,8 @@ _FILES = {
     "activity.zarr.zip": "the same as arrays by time, channel, layer and sector",
     "maps/": "the map of each cell and frame",
     "correlation/": "correlations by window and layer, if any were computed",
+    "prediction/": "which signals predict which, by layer, if it was tested",
+    "waves/": "waves around the cell, if they were looked for",
     "figures/": "figures for print",
     "columns.csv": "table, unit and meaning of each column of these tables",
     "parameters.toml": "the parameters, to be fed back with --parameters",

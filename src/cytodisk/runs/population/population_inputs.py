@@ -7,12 +7,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cytodisk.runs.batch.input_row import STUDIES
+from cytodisk.runs.population.movies.summary_names import OF_CORRELATIONS, OF_PREDICTIONS, OF_WAVES
 from cytodisk.runs.population.opening.found_studies import FoundStudy, Paths, find_studies
 from cytodisk.store.correlation_store import CORRELATION
+from cytodisk.store.predictions.prediction_store import PREDICTION
 from cytodisk.store.study_kind import ACTIVITY
+from cytodisk.store.waves.waves_store import WAVES
 from cytodisk.store.written_files import recorded
 
-_OF_CORRELATIONS = ("peak_correlation", "lag")
+_FOLDERS = {OF_CORRELATIONS: CORRELATION, OF_PREDICTIONS: PREDICTION, OF_WAVES: WAVES}
 _INPUTS = "inputs.parquet"
 
 
@@ -52,6 +55,6 @@ def _tables_of(study: FoundStudy, summary: str) -> Sequence[Path]:
     """Tables and arrays of a study, not its figures and maps."""
     names = sorted(recorded(study.provenance))
     own = [name for name in names if "/" not in name and (name.endswith(".parquet") or name == ACTIVITY)]
-    if summary in _OF_CORRELATIONS:
-        own += [name for name in names if name.startswith(f"{CORRELATION}/") and name.endswith(".parquet")]
+    for folder in (folder for summaries, folder in _FOLDERS.items() if summary in summaries):
+        own += [name for name in names if name.startswith(f"{folder}/") and name.endswith(".parquet")]
     return [study.folder / name for name in own]

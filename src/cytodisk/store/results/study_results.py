@@ -4,9 +4,22 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cytodisk.store.correlation_store import Correlation, list_correlations, read_correlation
-from cytodisk.store.predictions.prediction_store import Prediction, list_predictions, read_prediction
-from cytodisk.store.waves.waves_store import Waves, list_waves, read_waves
+from cytodisk.store.correlation_store import (
+    CORRELATION,
+    Correlation,
+    list_correlations,
+    read_correlation,
+)
+from cytodisk.store.predictions.prediction_store import (
+    PREDICTION,
+    Prediction,
+    list_predictions,
+    read_prediction,
+)
+from cytodisk.store.waves.waves_store import WAVES, Waves, list_waves, read_waves
+
+DERIVED = (CORRELATION, PREDICTION, WAVES)
+"""Folders of a study that hold what was computed from it afterwards."""
 
 
 class StudyResults:
