@@ -8,7 +8,7 @@ import xarray as xr
 
 import cytodisk as cd
 from cytodisk.arrays import FloatArray
-from cytodisk.errors import ParameterError
+from cytodisk.errors import ParameterError, StationarityWarning
 
 QUICK: dict[str, Any] = {"max_order": 3, "surrogates": 99}
 
@@ -157,6 +157,17 @@ def test_a_layer_that_cannot_be_tested_says_why() -> None:
     assert found["n"].values[1] == 0
     with pytest.raises(ParameterError, match=r"no layer can be tested.*NaN in every frame"):
         cd.predict(layers[:, 1:], target, **QUICK)
+
+
+def test_a_level_that_drifts_in_both_is_warned_of() -> None:
+    source, target = driven(strength=0.0)
+    line = np.linspace(0.0, 6.0, len(source))[:, None]
+    with pytest.warns(
+        StationarityWarning, match=r"100% of the series of source drifts, and of 100% of target"
+    ):
+        found = cd.predict(source + line, target + line, **QUICK)
+    assert found.attrs["drifting_source"] == 1.0
+    assert cd.predict(source + line, target, **QUICK).attrs["drifting_target"] < 0.25
 
 
 SOURCE, TARGET = driven(frames=40, sectors=3)

@@ -49,6 +49,16 @@ def test_shifts_keep_their_distance_and_none_comes_twice(turns: bool) -> None:
     assert shifts.frames.max() == 40
 
 
+def test_one_frame_of_past_on_a_circle_as_long_as_the_movie_tears_no_row() -> None:
+    source = np.random.default_rng(8).normal(size=(FRAMES, SECTORS))
+    used = np.ones(source.shape, dtype=bool)
+    run = ShiftedSource(source, used, 1, Shifts(np.array([4]), np.array([1])))
+    with_columns, with_itself = run.products(source[..., None])
+    moved = np.roll(source, (5, 1), axis=(0, 1))
+    assert with_columns.item() == pytest.approx(np.sum(moved * source))
+    assert with_itself.item() == pytest.approx(np.sum((moved - moved.mean(axis=0)) ** 2))
+
+
 def test_explained_squares_are_those_of_nested_regressions() -> None:
     random = np.random.default_rng(1)
     columns, target = random.normal(size=(20, 3)), random.normal(size=20)

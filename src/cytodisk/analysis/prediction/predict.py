@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.analysis.correlation.peaks import false_discovery
+from cytodisk.analysis.correlation.prepared_series import DRIFTING_SHARE, drifts, kpss
 from cytodisk.analysis.prediction.chance_gains import chance_gains
 from cytodisk.analysis.prediction.lagged_design import rows_with_past
 from cytodisk.analysis.prediction.layer_series import LayerSeries, Signals
@@ -24,7 +26,7 @@ from cytodisk.analysis.prediction.pooled_autoregression import (
 from cytodisk.analysis.prediction.prediction_orders import Orders, choose_orders, longest_past, penalty
 from cytodisk.analysis.prediction.prediction_parameters import PredictionParameters
 from cytodisk.arrays import FloatArray
-from cytodisk.errors import ParameterError
+from cytodisk.errors import ParameterError, StationarityWarning
 from cytodisk.taking import takes
 
 _ALPHA = 0.05
@@ -65,7 +67,10 @@ def predict(
         beyond the order. With surrogates gain_null (layer, surrogate), threshold, which 5 % of them exceed,
         p, and q (Benjamini-Hochberg over layers). reason says why a layer has no values, "" where it has.
 
-        The attrs are the settings, the names in `given`, and `surrogates`, how many were made at most.
+        A sector in which source or target is constant, or whose neighbours are not known, is not used.
+
+        The attrs are the settings, the names in `given`, `surrogates`, how many were made at most, and
+        drifting_source and drifting_target, the share of the series whose level drifts.
 
     Raises
     ------
@@ -73,9 +78,20 @@ def predict(
         Signals do not fit each other, are constant, empty or too short, frames are not evenly spaced, or a
         setting is out of its range. A layer among others that cannot be tested has a reason instead.
 
+    Warns
+    -----
+    StationarityWarning
+        The level of more than a quarter of the series of both source and target drifts.
+
     See Also
     --------
     cross_correlate : Correlation at every lag, which does not ask what predicts what.
+
+    Notes
+    -----
+    One autoregression for a layer is pooled over its sectors, each sector's mean removed. The word is
+    "predicts": a third signal that drives both, and is not given, makes one predict the other too.
+    Surrogates are the source with what nothing else says of it shifted in time and around the cell.
 
     References
     ----------
@@ -94,6 +110,7 @@ def predict(
     """
     how = PredictionParameters.of(**settings)
     signals = Signals.of(source, target, given)
+    drifting = _drifting(signals)
     numbers = signals.layers
     count = 1 if numbers is None else len(numbers)
     found: list[_LayerResult | str] = []
@@ -108,7 +125,24 @@ def predict(
             progress(place + 1, count)
     if all(isinstance(one, str) for one in found):
         raise ParameterError(f"no layer can be tested: {'; '.join(dict.fromkeys(map(str, found)))}")
-    return _dataset(found, signals, how)
+    return _dataset(found, signals, how).assign_attrs(drifting)
+
+
+def _drifting(signals: Signals) -> dict[str, float]:
+    """Share of the series of source and target whose level drifts; warns where it is large in both."""
+    shares = {}
+    for name, series in (("source", signals.source), ("target", signals.target)):
+        known = np.isfinite(kpss(series))
+        shares[f"drifting_{name}"] = float(drifts(series)[known].mean()) if known.any() else 0.0
+    if min(shares.values()) > DRIFTING_SHARE:
+        warnings.warn(
+            f"the level of {shares['drifting_source']:.0%} of the series of source drifts, and of "
+            f"{shares['drifting_target']:.0%} of target: one may seem to predict the other for that alone; "
+            "take out what is slow with prepare_series(…, detrend='linear')",
+            StationarityWarning,
+            stacklevel=3,
+        )
+    return shares
 
 
 @dataclass(frozen=True, eq=False)

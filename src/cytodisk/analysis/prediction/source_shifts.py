@@ -97,8 +97,8 @@ class ShiftedSource:
         for row, (shift, turn) in enumerate(zip(self._shifts.frames, self._shifts.sectors, strict=True)):
             at = (self._torn + shift) % len(self._source)
             past = np.roll(self._torn_past, turn, axis=1) * self._used[at][..., None]
-            flat = past.reshape(-1, self._past)
-            columns[row] -= flat.T @ whole[at].reshape(len(flat), -1)
+            flat = past.reshape(at.size * sectors, self._past)
+            columns[row] -= flat.T @ whole[at].reshape(len(flat), tables.shape[2])
             itself[row] -= flat.T @ flat
             sums[row] -= past.sum(axis=0).reshape(sectors, self._past)
         weights = np.maximum(self._used.sum(axis=0), 1.0)[:, None]
