@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 import cytodisk as cd
+from cytodisk.analysis.prediction.direction_support import weaker_direction
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError, StationarityWarning
 
@@ -98,6 +99,30 @@ def test_the_driven_signal_is_predicted_at_its_lag_and_not_the_other_way() -> No
     assert there["coefficient_low"].sel(lag=2) < 0.5 < there["coefficient_high"].sel(lag=2)
     assert there["effect"] > 0.3
     assert cd.predict(-source, target, **QUICK)["effect"] < -0.3
+
+
+def test_noise_of_measurement_makes_the_other_direction_seem_true_and_reversed_time_tells() -> None:
+    pair = cd.simulate.predicting_series("ar1", 1, 150, 1, 30, strength=0.7, source_noise=1.0)
+    source, target = pair["source"].isel(layer=0), pair["target"]
+    there, back = cd.predict(source, target, **QUICK), cd.predict(target, source, **QUICK)
+    assert there["p"] == back["p"] == 0.01
+    gains = (there["gain"], back["gain"], there["gain_reversed"], back["gain_reversed"])
+    assert not weaker_direction(*gains)
+    assert weaker_direction(back["gain"], there["gain"], back["gain_reversed"], there["gain_reversed"])
+
+
+def test_two_true_directions_are_both_kept() -> None:
+    pair = cd.simulate.predicting_series("ar1", 1, 150, 1, 30, strength=0.3, coupling="both ways")
+    source, target = pair["source"].isel(layer=0), pair["target"]
+    there, back = cd.predict(source, target, **QUICK), cd.predict(target, source, **QUICK)
+    gains = (there["gain"], back["gain"], there["gain_reversed"], back["gain_reversed"])
+    assert not weaker_direction(*gains)
+    assert not weaker_direction(back["gain"], there["gain"], back["gain_reversed"], there["gain_reversed"])
+
+
+def test_gains_that_are_not_known_mark_no_direction() -> None:
+    unknown = [0.1, np.nan]
+    assert not weaker_direction(unknown, unknown, unknown, unknown).any()
 
 
 def test_a_common_driver_predicts_unless_it_is_given() -> None:

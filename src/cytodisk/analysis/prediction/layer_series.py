@@ -39,6 +39,12 @@ class LayerSeries:
     given: tuple[FloatArray, ...]
     turns: bool
 
+    @property
+    def reversed(self) -> LayerSeries:
+        """The same on reversed time."""
+        beside, given = (tuple(one[::-1] for one in some) for some in (self.beside, self.given))
+        return LayerSeries(self.target[::-1], self.source[::-1], beside, given, self.turns)
+
 
 @dataclass(frozen=True, eq=False)
 class Signals:

@@ -59,7 +59,8 @@ def predict(
     -------
     Dataset with the dim layer, where there are layers
         gain, ln of the sum of squared errors without the source over that with it, at least 0 (nats);
-        gain_excess, minus the surrogates' mean, which is 0 on average where nothing predicts;
+        gain_reversed, the same on reversed time, for `weaker_direction`;
+        gain_excess, gain minus the surrogates' mean, which is 0 on average where nothing predicts;
         likelihood_ratio, rows times gain; order, of the target's and its neighbours' past; given_order;
         source_order; n, rows; sectors used; effect, the sum of the source's coefficients in standard
         deviations: its sign says whether more source means more or less target. coefficient with
@@ -148,6 +149,7 @@ def _drifting(signals: Signals) -> dict[str, float]:
 @dataclass(frozen=True, eq=False)
 class _LayerResult:
     gain: float
+    gain_reversed: float
     orders: Orders
     rows: int
     sectors: int
@@ -159,6 +161,7 @@ class _LayerResult:
         null = self.null
         known = {
             "gain": self.gain,
+            "gain_reversed": self.gain_reversed,
             "likelihood_ratio": self.rows * self.gain,
             "order": self.orders.own,
             "given_order": self.orders.given,
@@ -175,8 +178,35 @@ class _LayerResult:
 
 
 def _predict_layer(series: LayerSeries, how: PredictionParameters) -> _LayerResult:
-    past = longest_past(how, bool(series.given))
-    rows = rows_with_past(series, past)
+    model = _fitted(series, how)
+    held, order = model.held, model.orders.source
+    values = held.rows.lagged(series.source, range(1, 2))[0]
+    fit = fit_source(held, model.columns[:, :order], float(values @ values) / held.rows.size)
+    null = np.zeros(0)
+    if how.surrogates:
+        past = model.columns.shape[1]
+        null = chance_gains(
+            held, series, model.orders, past, model.price, count=how.surrogates, seed=how.seed
+        )
+    try:
+        back_in_time = _fitted(series.reversed, how).gain
+    except ParameterError:  # other rows have a whole future than have a whole past
+        back_in_time = np.nan
+    return _LayerResult(model.gain, back_in_time, model.orders, held.rows.size, held.rows.sectors, fit, null)
+
+
+@dataclass(frozen=True, eq=False)
+class _Model:
+    held: Held
+    columns: FloatArray
+    orders: Orders
+    gain: float
+    price: float | None
+
+
+def _fitted(series: LayerSeries, how: PredictionParameters) -> _Model:
+    """The model of a layer: what is held, what that leaves of the source, orders, gain."""
+    rows = rows_with_past(series, longest_past(how, bool(series.given)))
     orders = choose_orders(series, rows, how)
     held = Held.of(series, rows, orders)
     most = how.max_order if how.source_order is None else how.source_order
@@ -184,17 +214,11 @@ def _predict_layer(series: LayerSeries, how: PredictionParameters) -> _LayerResu
     columns = source_columns(held, series, most)
     squares = explained((columns.T @ columns)[None], (columns.T @ held.left)[None])
     gain, order = best_gain(held, squares, price)
-    orders = Orders(orders.own, orders.given, int(order[0]))
-    values = rows.lagged(series.source, range(1, 2))[0]
-    fit = fit_source(held, columns[:, : orders.source], float(values @ values) / rows.size)
-    null = np.zeros(0)
-    if how.surrogates:
-        null = chance_gains(held, series, orders, most, price, count=how.surrogates, seed=how.seed)
-    return _LayerResult(float(gain[0]), orders, rows.size, rows.sectors, fit, null)
+    return _Model(held, columns, Orders(orders.own, orders.given, int(order[0])), float(gain[0]), price)
 
 
 _WHOLE = ("order", "given_order", "source_order", "n", "sectors")
-_UNITS = {"gain": "nat", "gain_excess": "nat", "threshold": "nat", "gain_null": "nat"}
+_UNITS = {"gain": "nat", "gain_reversed": "nat", "gain_excess": "nat", "threshold": "nat", "gain_null": "nat"}
 _UNITS |= {"order": "frame", "given_order": "frame", "source_order": "frame", "lag": "frame", "lag_s": "s"}
 
 
