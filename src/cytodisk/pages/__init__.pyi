@@ -19,4 +19,6 @@ from .compared_movie import write_compared_movie as write_compared_movie
 # Figures of a population
 from .population.write_population_figures import write_population_figures as write_population_figures
 from .population.pooled_page import write_pooled_figure as write_pooled_figure
+from .population.pooled_gain_page import write_pooled_gains as write_pooled_gains
+from .population.pooled_wave_page import write_pooled_waves as write_pooled_waves
 from .population.power_page import write_power_figure as write_power_figure
