@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from cytodisk.cli.batches.of_batch import GroupsOfBatch, refuse_cells, refuse_of_batch
 from cytodisk.cli.console import console_for, progress_bar, say_lines
 from cytodisk.cli.options import Figures, Given, MovieStudyOrBatch, Quiet, with_parameters
 from cytodisk.cli.report.given_folder import is_batch
@@ -28,12 +29,6 @@ if TYPE_CHECKING:
     from cytodisk.store.study import Study
 
 NOTHING_CHANGED = "Stopped; nothing was changed."
-GroupsOfBatch = Annotated[
-    Path | None,
-    typer.Option(
-        metavar="PATH", help="Of a batch: table of groups, with the condition and experiment of cells."
-    ),
-]
 
 
 @with_parameters(BatchCorrelateParameters, PoolOptions, FigureOptions, groups=GroupsOfBatch)
@@ -59,7 +54,7 @@ def correlate_command(
     if is_batch(study):
         _correlate_batch(study, given, (signal, with_), cell, formats or ("png",), quiet)
         return
-    _refuse_of_batch(study, given)
+    refuse_of_batch(study, given, CorrelateParameters, TableOptions, FigureOptions)
     settings, options = given.of(CorrelateParameters), given.options(TableOptions)
     console = console_for(quiet)
     there = opened(console, study)
@@ -88,26 +83,12 @@ def _correlate_batch(
     quiet: bool,
 ) -> None:
     from cytodisk.cli.batches.batch_correlation import correlate_batch
-    from cytodisk.errors import ParameterError
 
-    if cells:
-        raise ParameterError(f"{batch} is a batch, whose cells all count: leave --cell out")
+    refuse_cells(batch, cells)
     settings, options = given.of(BatchCorrelateParameters), dict(given.options(PoolOptions))
     correlate_batch(
         batch, names, settings, groups=given.groups, formats=formats, options=options, quiet=quiet
     )
-
-
-def _refuse_of_batch(study: Path, given: Given) -> None:
-    """Refuse what is for a batch alone, where a study is given."""
-    from cytodisk.errors import ParameterError
-
-    of_batch = given.beyond(CorrelateParameters, TableOptions, FigureOptions)
-    of_batch += ["--groups"] * (given.groups is not None)
-    if of_batch:
-        raise ParameterError(
-            f"{', '.join(of_batch)}: only for the folder of a batch, and {study} is none: leave it out"
-        )
 
 
 def draw_correlation(

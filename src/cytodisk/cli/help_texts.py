@@ -94,6 +94,10 @@ STUDY/prediction/SOURCE~TARGET or STUDY/prediction/network.
 
 Predicting is what a cause would do, but no proof of one: a common driver that is not given does it, too.
 
+Of a folder that cytodisk batch wrote, each movie is tested, and the gains of all cells are pooled: mean and
+interval over experiments, tested against 0 and between conditions. A figure and tables go to the same place
+in the folder of the batch.
+
 Examples:
 
   cytodisk predict out/ --source Rac1 --target velocity
@@ -104,6 +108,8 @@ Examples:
 
   cytodisk predict out/ --source Rac1 --target RhoA --max-order 12 --surrogates 1999 --format pdf,png
 
+  cytodisk predict all/ --source Rac1 --target velocity --compare control,drug --resume
+
 Exit code: 0 when done (a cell in which nothing can be tested has a row with the reason), 2 if none could be.
 """,
     "waves": """Do waves run along the edge of cells, or through a signal, and which way?
@@ -111,6 +117,10 @@ Exit code: 0 when done (a cell in which nothing can be tested has a row with the
 STUDY is the folder that cytodisk movie wrote. Without --signal the velocity of the edge is looked at; with it
 every layer of a channel. Speeds are positive towards higher sectors, which is clockwise as seen in the image.
 Tables and figures go to STUDY/waves/SIGNAL.
+
+Of a folder that cytodisk batch wrote, waves are looked for in each movie, and their numbers are pooled: mean
+and interval over experiments; their order is tested against 0, and all between conditions. A figure and
+tables go to the same place in the folder of the batch.
 
 Examples:
 
@@ -121,6 +131,8 @@ Examples:
   cytodisk waves out/ --signal Rac1 --layer 2 --format pdf,png
 
   cytodisk waves out/ --frames 0:200 --name early
+
+  cytodisk waves all/ --compare control,drug --resume
 
 Exit code: 0 when done (a cell in which waves cannot be looked for has a row with the reason), 2 if there is
 none in which they can.

@@ -6,10 +6,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from cytodisk.cli.batches.of_batch import GroupsOfBatch, refuse_cells, refuse_of_batch
 from cytodisk.cli.console import console_for, progress_bar, say_lines
 from cytodisk.cli.options import Figures, Given, MovieStudyOrBatch, Quiet, with_parameters
 from cytodisk.cli.report.given_folder import is_batch
 from cytodisk.cli.report.report_command import opened
+from cytodisk.runs.population.pooling.pool_parameters import PoolOptions
+from cytodisk.runs.population.predictions.batch_predict_parameters import BatchPredictParameters
 from cytodisk.runs.predict.predict_parameters import PredictParameters
 from cytodisk.runs.run_options import FigureOptions, TableOptions
 from cytodisk.runs.told.flag_words import flag_lines
@@ -27,7 +30,7 @@ if TYPE_CHECKING:
 NOTHING_CHANGED = "Stopped; nothing was changed."
 
 
-@with_parameters(PredictParameters, TableOptions, FigureOptions)
+@with_parameters(BatchPredictParameters, PoolOptions, FigureOptions, groups=GroupsOfBatch)
 def predict_command(
     study: MovieStudyOrBatch,
     given: Given,
@@ -52,10 +55,12 @@ def predict_command(
     from cytodisk.runs.predict.predict_study import VELOCITY, predict_study
 
     formats = given.formats(figures)
-    if is_batch(study):
-        _refuse_batch(study)
     if source is not None and target is None:
         target = VELOCITY
+    if is_batch(study):
+        _predict_batch(study, given, (source, target), cell, formats or ("png",), quiet)
+        return
+    refuse_of_batch(study, given, PredictParameters, TableOptions, FigureOptions)
     settings, options = given.of(PredictParameters), given.options(TableOptions)
     console = console_for(quiet)
     there = opened(console, study)
@@ -71,6 +76,21 @@ def predict_command(
     say_lines(console, prediction_lines(found, whole))
     say_lines(console, _flag_lines(whole, found))
     draw_prediction(quiet, whole, found, figures, formats)
+
+
+def _predict_batch(
+    batch: Path,
+    given: Given,
+    names: tuple[str | None, str | None],
+    cells: list[int] | None,
+    formats: Sequence[str],
+    quiet: bool,
+) -> None:
+    from cytodisk.cli.batches.batch_prediction import predict_batch
+
+    refuse_cells(batch, cells)
+    settings, options = given.of(BatchPredictParameters), dict(given.options(PoolOptions))
+    predict_batch(batch, names, settings, groups=given.groups, formats=formats, options=options, quiet=quiet)
 
 
 def draw_prediction(
@@ -97,9 +117,3 @@ def _flag_lines(study: "Study", found: "Prediction") -> Sequence[str]:
 
     shown = qc_flags(with_one_prediction(study, found))
     return list(flag_lines(shown, f"see cytodisk report {study.path}", file_names(study)))
-
-
-def _refuse_batch(folder: Path) -> None:
-    from cytodisk.errors import ParameterError
-
-    raise ParameterError(f"{folder} is a batch: pass the folder of one movie, in {folder / 'studies'}")

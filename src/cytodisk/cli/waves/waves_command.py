@@ -6,9 +6,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from cytodisk.cli.batches.of_batch import GroupsOfBatch, refuse_cells, refuse_of_batch
 from cytodisk.cli.console import console_for, progress_bar, say_lines
-from cytodisk.cli.options import Figures, Given, Quiet, with_parameters
+from cytodisk.cli.options import Figures, Given, MovieStudyOrBatch, Quiet, with_parameters
+from cytodisk.cli.report.given_folder import is_batch
 from cytodisk.cli.report.report_command import opened
+from cytodisk.runs.population.pooling.pool_parameters import PoolOptions
+from cytodisk.runs.population.wave_numbers.batch_waves_parameters import BatchWavesParameters
 from cytodisk.runs.run_options import FigureOptions, TableOptions
 from cytodisk.runs.told.flag_words import wave_flag_lines
 from cytodisk.runs.told.wave_lines import earlier_waves, wave_finding_lines, wave_lines
@@ -21,11 +25,9 @@ if TYPE_CHECKING:
 NOTHING_CHANGED = "Stopped; nothing was changed."
 
 
-@with_parameters(WavesParameters, TableOptions, FigureOptions)
+@with_parameters(BatchWavesParameters, PoolOptions, FigureOptions, groups=GroupsOfBatch)
 def waves_command(
-    study: Annotated[
-        Path, typer.Argument(metavar="STUDY", help="Folder of a movie's study.", show_default=False)
-    ],
+    study: MovieStudyOrBatch,
     given: Given,
     signal: Annotated[
         str,
@@ -40,6 +42,10 @@ def waves_command(
     from cytodisk.runs.waves.waves_study import waves_study
 
     formats = given.formats(figures)
+    if is_batch(study):
+        _waves_batch(study, given, signal, cell, formats or ("png",), quiet)
+        return
+    refuse_of_batch(study, given, WavesParameters, TableOptions, FigureOptions)
     settings, options = given.of(WavesParameters), given.options(TableOptions)
     console = console_for(quiet)
     there = opened(console, study)
@@ -56,6 +62,21 @@ def waves_command(
     if before:
         console.print(f"{before}; to keep both, add --name NAME.")
     console.print(f"results: {found.path}")
+
+
+def _waves_batch(
+    batch: Path,
+    given: Given,
+    signal: str,
+    cells: list[int] | None,
+    formats: Sequence[str],
+    quiet: bool,
+) -> None:
+    from cytodisk.cli.batches.batch_waves import waves_batch
+
+    refuse_cells(batch, cells)
+    settings, options = given.of(BatchWavesParameters), dict(given.options(PoolOptions))
+    waves_batch(batch, signal, settings, groups=given.groups, formats=formats, options=options, quiet=quiet)
 
 
 def draw_waves(quiet: bool, study: "Study", found: "Waves", figures: int, formats: Sequence[str]) -> None:

@@ -13,7 +13,7 @@ from cytodisk.errors import ReadError
 from cytodisk.files import real_path
 from cytodisk.number_words import counted
 from cytodisk.pages.report.batches.batch_tables import listed_cells, listed_inputs, own_columns, read_inputs
-from cytodisk.pages.report.batches.pooled import pooled_correlations
+from cytodisk.pages.report.batches.pooled import pooled_results
 from cytodisk.pages.report.encode import json_for_script
 from cytodisk.pages.report.listed import MOST_ROWS
 from cytodisk.pages.report.provenance_words import version_of
@@ -54,7 +54,7 @@ def batch_page(folder: Path) -> str:
         "flags": _flags(inputs),
         "left_out": list(_left_out(folder, inputs, count, data)),
         "command": _command(folder, inputs),
-        "correlations": pooled_correlations(folder),
+        "pooled": pooled_results(folder),
         "version": version_of(provenance),
         "facts": [("batch", ""), ("cytodisk", version_of(provenance))],
         "settings": [],
