@@ -118,6 +118,14 @@ def test_a_wave_that_is_the_cells_motion_is_flagged(tmp_path: Path) -> None:
     assert again.cells["qc_flags"].tolist() == [""]
 
 
+def test_without_registration_the_cells_motion_is_not_known(tmp_path: Path) -> None:
+    study = series_study(tmp_path, [wave(noise=0.2)])
+    study.provenance["parameters"]["registration"] = False
+    row = run_waves(study, **FEW).cells.iloc[0]
+    assert row["qc_flags"] == "cell's motion not tested"
+    assert "without registration" in row["geometry_not_tested"]
+
+
 def test_frames_are_those_that_were_asked_for(tmp_path: Path) -> None:
     found = run_waves(series_study(tmp_path, [wave()]), frames=(6, 40), name="middle", **FEW)
     assert found.path.name == "velocity~middle"

@@ -68,8 +68,9 @@ _SAID: dict[str, _Said] = {
     ),
     "cell's motion not tested": _Said(
         "it is not known what the motion of the cell alone gives for",
-        "A cell that moves over a pattern that stands still looks like a wave in its sectors.",
-        "Put the images back to where the movie was measured, and run cytodisk waves again.",
+        "A long cell that turns, or one that moves over a pattern that stands still, looks like a wave.",
+        "Of a signal, put the images back to where it was measured; of velocity, follow the movie with "
+        "registration. Then run cytodisk waves again.",
         lambda row: str(row["geometry_not_tested"]),
     ),
 }

@@ -149,6 +149,8 @@ class CellWaves:
             return ""
         if self.signal in VELOCITIES and rows[None]["mode"] == 1:
             return ""  # one wave around is a motion of the whole cell: without that nothing can be left
+        if self.signal in VELOCITIES and not self.study.provenance["parameters"].get("registration", True):
+            return "the movie was followed without registration, so how the cell turns is not known"
         left: xr.DataArray | None
         if self.signal in VELOCITIES:
             left, why = series.activity[_CELL_FRAME].transpose("time", "sector").load(), ""
