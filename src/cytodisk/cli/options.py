@@ -258,6 +258,8 @@ def _option(name: str, field: FieldInfo, more: str) -> inspect.Parameter:
     words = choices(field.annotation)
     numbers = ["NUMBER"] * (float in wanted)  # as "NUMBER|area"
     metavar = "|".join([*numbers, *words]) if words and tuple not in wanted else None
+    if metavar is not None and len(metavar) > _LONGEST_CHOICE:  # the help lists them
+        metavar = _TEXTS.get(name, "NAME")
     if not wanted & {bool, str, tuple}:  # a text for the parser, so that errors are the model's
         metavar = "NUMBER"
     if tuple in wanted and not words:
@@ -268,6 +270,7 @@ def _option(name: str, field: FieldInfo, more: str) -> inspect.Parameter:
     return _keyword(name, Annotated[kind | None, option])
 
 
+_LONGEST_CHOICE = 66  # letters
 _TEXTS = {"scene": "NAME", "mask_channel": "NAME", "z": "SLICE", "tracks": "PATH", "align": "ANGLE"}
 """What stands behind a flag in its help where that is more than some text."""
 

@@ -30,7 +30,9 @@ class PopulationParameters(ComparisonParameters):
         words="names of channels with commas between",
     )
     summary: MovieSummary = parameter(
-        "mean", "What a cell of a movie contributes; a cell of an image contributes its windows as they are."
+        "mean",
+        "What a cell of a movie contributes: mean, sd, velocity, peak_correlation, lag, around_events, gain, "
+        "gain_score or waves; a cell of an image contributes its windows as they are.",
     )
     normalise: Normalisation = parameter(
         "none", "What each cell's values are divided by, or relative to, before cells are compared."
