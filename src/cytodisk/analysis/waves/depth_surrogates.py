@@ -10,11 +10,10 @@ from scipy.ndimage import gaussian_filter
 
 from cytodisk.analysis.waves.depth_modes import DepthWaves, depth_cells
 from cytodisk.analysis.waves.mode_spectrum import Bands
+from cytodisk.analysis.waves.sector_spectra import SectorSpectra, fine_share
 from cytodisk.analysis.waves.wave_background import background
-from cytodisk.analysis.waves.wave_surrogates import LEAST, ROUNDS, SMOOTH, TRIALS, mirrored_amplitudes
+from cytodisk.analysis.waves.wave_surrogates import BLOCK, LEAST, ROUNDS, SMOOTH, TRIALS
 from cytodisk.arrays import ComplexArray, FloatArray, IntArray
-
-_BLOCK = 25
 
 
 class DepthNull:
@@ -48,16 +47,13 @@ class DepthNull:
         on_grid = np.full((slots[-1] + 1, *values.shape[1:]), np.nan)
         on_grid[slots] = values
         self._frames = len(on_grid)
-        by_sector = mirrored_amplitudes(on_grid.reshape(self._frames, -1)).reshape(-1, *values.shape[1:])
-        amplitude = np.sqrt((by_sector**2).mean(axis=1))  # (frequency, layer)
-        both = np.concatenate([amplitude, amplitude[-2:0:-1]])
-        self._amplitude: FloatArray = both[:, None, :, None]
+        self._spectra = SectorSpectra.of(on_grid.reshape(self._frames, -1))
         self._set_gain(modes, interval, found)
 
     def draw(self, count: int) -> Iterator[ComplexArray]:
         """Modes of surrogates, in blocks of shape (T, M + 1, L, R)."""
-        for start in range(0, count, _BLOCK):
-            yield self._drawn(min(_BLOCK, count - start))
+        for start in range(0, count, BLOCK):
+            yield self._drawn(min(BLOCK, count - start))
 
     def _set_gain(self, modes: ComplexArray, interval: float, found: Bands) -> None:
         """Power of each wave at each frequency such that surrogates have the background of the movie."""
@@ -65,11 +61,13 @@ class DepthNull:
         waves = DepthWaves.of(count - 1, layers)
         groups, keys = waves.groups(), waves.group_keys()
 
-        def levels(movies: ComplexArray) -> FloatArray:
-            fitted = background(depth_cells(movies, found), found.frequencies, groups)
-            return np.stack([fitted.level.mean(axis=1), fitted.slope.mean(axis=1)])
+        def levels(movies: ComplexArray) -> tuple[FloatArray, FloatArray]:
+            power = depth_cells(movies, found)
+            fitted = background(power, found.frequencies, groups)
+            mean = np.stack([fitted.level.mean(axis=1), fitted.slope.mean(axis=1)])
+            return mean, power.sum(axis=1)
 
-        wanted = levels(modes[..., None])
+        wanted, sums = levels(modes[..., None])
         deep = layers // 2 + 1
         table = np.empty((2, count, deep))
         table[:, keys[:, 0], keys[:, 1]] = wanted
@@ -86,9 +84,12 @@ class DepthNull:
             fine = table[:, :, low] * (1.0 - share) + table[:, :, high] * share
             logs = fine[0] + abscissa[:, None, None] * fine[1]  # (frequency, mode, 2 layers)
             self._gain = np.exp(0.5 * np.maximum(logs - logs.max(), LEAST))[..., None]
-            if step < ROUNDS:
-                change = wanted - levels(self._drawn(TRIALS))
-                set_to = set_to + np.clip(change, [[-2.0], [-1.0]], [[2.0], [1.0]])
+            had, had_sums = levels(self._drawn(TRIALS))
+            if step == ROUNDS // 2:
+                self._spectra = self._spectra.with_fine(fine_share(sums[:, 0], had_sums))
+            elif step < ROUNDS:
+                set_to = set_to + np.clip(wanted - had, [[-2.0], [-1.0]], [[2.0], [1.0]])
+        self._spectra = self._spectra.scaled(float(sums.sum() / had_sums.sum(axis=0).mean()))
 
     def _drawn(self, count: int) -> ComplexArray:
         modes, layers = self._shape
@@ -96,7 +97,9 @@ class DepthNull:
         noise = self._random.standard_normal(shape) + 1j * self._random.standard_normal(shape)
         noise[:, 0] = np.sqrt(2.0) * noise[:, 0].real
         spectrum = fft.fft(fft.fft(noise, axis=0), axis=2) * self._gain
-        alike = fft.ifft(spectrum, axis=2)[:, :, :layers] * self._amplitude
+        power = (self._spectra.amplitude**2).reshape(self._frames + 1, -1, layers).mean(axis=1)
+        amplitude = np.sqrt(np.concatenate([power, power[-2:0:-1]]))  # (frequency, layer)
+        alike = fft.ifft(spectrum, axis=2)[:, :, :layers] * amplitude[:, None, :, None]
         drawn = fft.ifft(alike, axis=0)[self._slots]
         return np.asarray(drawn)
 

@@ -17,7 +17,7 @@ from cytodisk.analysis.waves.disk_series import DiskSeries, disk_series
 from cytodisk.analysis.waves.edge_series import check_shown, named_values
 from cytodisk.analysis.waves.edge_waves import ROTATING, SIGNIFICANT
 from cytodisk.analysis.waves.mode_spectrum import Bands, bands, refined_frequency
-from cytodisk.analysis.waves.wave_background import background, wave_scores, with_sums
+from cytodisk.analysis.waves.wave_background import background, wave_scores
 from cytodisk.analysis.waves.wave_order import null_orders, order_score, p_value
 from cytodisk.analysis.waves.wave_phase import demodulated, pair_amplitudes, persistence, travel_direction
 from cytodisk.analysis.waves.wave_surrogates import frame_slots
@@ -170,11 +170,10 @@ def _strongest(
     modes = series.modes(how.max_mode)
     waves = DepthWaves.of(modes.shape[1] - 1, modes.shape[2])
     groups = waves.groups()
-    variance = float(np.nanmean(np.nanvar(whole.values[used], axis=0)))
 
     def scores(power: FloatArray) -> FloatArray:
         excess = background(power, found.frequencies, groups).excess
-        return wave_scores(power[: found.visible] / variance, excess[: found.visible], groups)
+        return wave_scores(power[: found.visible], excess[: found.visible], groups)
 
     power = depth_cells(modes[..., None], found)
     own = scores(power)[:, :, 0]
@@ -185,7 +184,7 @@ def _strongest(
     step = 1.0 / (seconds[-1] - seconds[0])
     within = (1.0 / periods[1], 1.0 / periods[0])
     frequency = refined_frequency(modes[:, mode], seconds, float(found.frequencies[place]), step, within)
-    null = _null(series, modes, found, power[:, :, 0].sum(axis=1), scores, how, progress)
+    null = _null(series, modes, found, scores, how, progress)
     pairs = np.stack([pair_amplitudes(layer, seconds, frequency) for layer in modes[:, mode].T], axis=2)
     travel = depth_travel(pairs[:, 0], pairs[:, 1] if mode else None, series.depth)
     return DiskWave(mode, frequency, float(own.max()), null, pairs, seconds, travel, periods)
@@ -195,7 +194,6 @@ def _null(
     series: DiskSeries,
     modes: ComplexArray,
     found: Bands,
-    sums: FloatArray,
     scores: Callable[[FloatArray], FloatArray],
     how: WaveSearchParameters,
     progress: Callable[[int, int], None] | None,
@@ -208,8 +206,6 @@ def _null(
     null = DepthNull(modes, values, slots - slots[0], whole.interval, found, how.seed)
     for drawn in null.draw(how.surrogates):
         power = depth_cells(drawn, found)
-        if len(sums) and power.shape[1] > 1:
-            power = with_sums(power, sums)
         largest.extend(scores(power).max(axis=(0, 1)))
         if progress is not None:
             progress(len(largest), how.surrogates)

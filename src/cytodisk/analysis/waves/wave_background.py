@@ -69,12 +69,13 @@ def background(power: FloatArray, frequencies: FloatArray, groups: Sequence[IntA
     return Background(logs, level, slope)
 
 
-def wave_scores(share: FloatArray, excess: FloatArray, groups: Sequence[IntArray]) -> FloatArray:
-    """Share of the variance that each wave carries, times the logarithm of its excess; below 0 counts as 0.
+def wave_scores(power: FloatArray, excess: FloatArray, groups: Sequence[IntArray]) -> FloatArray:
+    """Share of all power that each wave carries, times the logarithm of its excess; below 0 counts as 0.
 
     Parameters
     ----------
-    share, excess : ndarray of shape (K, C, R) and dtype float
+    power, excess : ndarray of shape (K, C, R) and dtype float
+        At the frequencies that are looked for.
     groups : sequence of ndarray of dtype int
 
     Returns
@@ -82,6 +83,7 @@ def wave_scores(share: FloatArray, excess: FloatArray, groups: Sequence[IntArray
     ndarray of shape (K, C + groups of several, R) and dtype float
         Of each wave, then of all of a group together: standing waves.
     """
+    share = power / power.sum(axis=(0, 1))
     several = [cells for cells in groups if len(cells) > 1]
     excesses, shares = [excess], [share]
     for cells in several:
@@ -89,11 +91,6 @@ def wave_scores(share: FloatArray, excess: FloatArray, groups: Sequence[IntArray
         excesses.append(together[:, None])
         shares.append(share[:, cells].sum(axis=1)[:, None])
     return np.asarray(np.concatenate(shares, axis=1) * np.maximum(np.concatenate(excesses, axis=1), 0.0))
-
-
-def with_sums(power: FloatArray, sums: FloatArray) -> FloatArray:
-    """Power of surrogates (K, C, R), at each frequency with the sum (K,) over waves that the movie has."""
-    return np.asarray(power * (sums[:, None, None] / power.sum(axis=1, keepdims=True)))
 
 
 def _robust_line(values: FloatArray, abscissa: FloatArray) -> tuple[FloatArray, FloatArray]:

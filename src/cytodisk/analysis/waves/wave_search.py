@@ -10,7 +10,7 @@ import numpy as np
 from cytodisk.analysis.waves.edge_modes import highest_mode, mode_weights, modes_of
 from cytodisk.analysis.waves.edge_series import EdgeSeries, check_shown
 from cytodisk.analysis.waves.mode_spectrum import Bands, bands, refined_frequency, wave_cells
-from cytodisk.analysis.waves.wave_background import background, edge_groups, wave_scores, with_sums
+from cytodisk.analysis.waves.wave_background import background, edge_groups, wave_scores
 from cytodisk.analysis.waves.wave_surrogates import WaveNull
 from cytodisk.analysis.waves.waves_parameters import WaveSearchParameters
 from cytodisk.arrays import ComplexArray, FloatArray
@@ -94,18 +94,16 @@ class WaveSearch:
         """Scores (visible, 3 M + 1, R)."""
         groups, visible = edge_groups(self.highest), self.bands.visible
         excess = background(power, self.bands.frequencies, groups).excess
-        return wave_scores(power[:visible] / self._variance, excess[:visible], groups)
+        return wave_scores(power[:visible], excess[:visible], groups)
 
     def null_scores(
-        self, how: WaveSearchParameters, sums: FloatArray, progress: Callable[[int, int], None] | None
+        self, how: WaveSearchParameters, progress: Callable[[int, int], None] | None
     ) -> tuple[FloatArray, FloatArray]:
         """Largest score of each surrogate, (R,), and the shares of modes in its variance, (M + 1, R)."""
         found: list[float] = []
         shares = []
         for movies in WaveNull(self.series, self.bands, how.seed).draw(how.surrogates):
             power = self.power(movies)
-            if self.highest:
-                power = with_sums(power, sums)
             found.extend(self.scores(power).max(axis=(0, 1)))
             shares.append(mode_shares(self.shares(power)))
             if progress is not None:
@@ -140,7 +138,7 @@ def strongest_wave(
     frequency = refined_frequency(
         search.modes[:, mode], search.seconds, float(search.bands.frequencies[place]), step, within
     )
-    null, chance = search.null_scores(how, power[:, :, 0].sum(axis=1), progress)
+    null, chance = search.null_scores(how, progress)
     return WaveFound(
         mode=mode,
         frequency=frequency,

@@ -12,20 +12,18 @@ import numpy as np
 from scipy import fft
 from scipy.ndimage import gaussian_filter1d
 
-from cytodisk.analysis.correlation.prepared_series import interpolated
 from cytodisk.analysis.waves.edge_modes import mode_weights, modes_of
 from cytodisk.analysis.waves.edge_series import EdgeSeries
 from cytodisk.analysis.waves.mode_spectrum import Bands, wave_cells
-from cytodisk.analysis.waves.wave_background import Background, background, edge_groups
+from cytodisk.analysis.waves.sector_spectra import SectorSpectra, fine_share
+from cytodisk.analysis.waves.wave_background import background, edge_groups
 from cytodisk.arrays import FloatArray, IntArray
 
-_BLOCK = 25  # surrogates made at once
+BLOCK = 25  # surrogates made at once
 TRIALS = 25  # from which the levels of modes are set
-ROUNDS = 3
+ROUNDS = 4
 LEAST = -16.0  # logarithm of the power of a mode over that of the strongest
-_OWN_SHAPE = 6.0  # a sector's own spectrum over the mean one is smoothed by frames / this
-SMOOTH = 1.0
-_FINE = 1.0  # bins of twice the duration by which the mean spectrum is smoothed
+SMOOTH = 1.0  # modes over which levels are smoothed
 
 
 class WaveNull:
@@ -52,14 +50,14 @@ class WaveNull:
         self._missing = ~np.isfinite(series.values)
         on_grid = np.full((self._slots[-1] + 1, series.values.shape[1]), np.nan)
         on_grid[self._slots] = series.values
-        self._amplitude = mirrored_amplitudes(on_grid)
+        self._spectra = SectorSpectra.of(on_grid)
         self._frames, self._sectors = on_grid.shape
         self._set_modes(series, found)
 
     def draw(self, count: int) -> Iterator[FloatArray]:
         """Surrogates of the frames that are used, in blocks of shape (T, S, R)."""
-        for start in range(0, count, _BLOCK):
-            yield self._drawn(min(_BLOCK, count - start))
+        for start in range(0, count, BLOCK):
+            yield self._drawn(min(BLOCK, count - start))
 
     def _set_modes(self, series: EdgeSeries, found: Bands) -> None:
         """Power of each mode at each frequency such that surrogates have the background of the movie."""
@@ -67,27 +65,30 @@ class WaveNull:
         whole = max((self._sectors - 1) // 2, 0)
         used = self._used
         weights = mode_weights(series.lengths[used], ~self._missing[used], whole)
-
         groups = edge_groups(whole)
 
-        def levels(movies: FloatArray) -> Background:
-            return background(wave_cells(modes_of(movies, weights), found), found.frequencies, groups)
+        def levels(movies: FloatArray) -> tuple[FloatArray, FloatArray]:
+            power = wave_cells(modes_of(movies, weights), found)
+            fitted = background(power, found.frequencies, groups)
+            mean = np.stack([fitted.level.mean(axis=1), fitted.slope.mean(axis=1)])
+            return mean, power.sum(axis=1)
 
-        wanted = levels(series.values[used][:, :, None])
-        number = np.arange(self._amplitude.shape[0]) / (2.0 * self._frames * series.interval)
+        wanted, sums = levels(series.values[used][:, :, None])
+        wanted = set_to = _smooth(wanted)
+        number = np.arange(self._frames + 1) / (2.0 * self._frames * series.interval)
         low, high = found.frequencies[0], found.frequencies[-1]
         abscissa = np.log(number.clip(low, high)) - np.log(found.frequencies).mean()
-        level, slope = _smooth(wanted.level[:, 0]), _smooth(wanted.slope[:, 0])
-        wanted_level, wanted_slope = level, slope
         for step in range(ROUNDS + 1):
-            logs = level[:, None] + slope[:, None] * abscissa
+            logs = set_to[0, :, None] + set_to[1, :, None] * abscissa
             logs = np.maximum(logs - logs.max(), LEAST)
             last = logs[np.minimum(np.arange(half + 1), whole)]
             self._mode_gain = np.exp(0.5 * last).T  # (frequency, mode)
-            if step < ROUNDS:
-                had = levels(self._drawn(TRIALS))
-                level = level + np.clip(wanted_level - had.level.mean(axis=1), -2.0, 2.0)
-                slope = slope + np.clip(wanted_slope - had.slope.mean(axis=1), -1.0, 1.0)
+            had, had_sums = levels(self._drawn(TRIALS))
+            if step == ROUNDS // 2:
+                self._spectra = self._spectra.with_fine(fine_share(sums[:, 0], had_sums))
+            elif step < ROUNDS:
+                set_to = set_to + np.clip(wanted - had, [[-2.0], [-1.0]], [[2.0], [1.0]])
+        self._spectra = self._spectra.scaled(float(sums.sum() / had_sums.sum(axis=0).mean()))
 
     def _drawn(self, count: int) -> FloatArray:
         noise = self._random.standard_normal((count, 2 * self._frames, self._sectors))
@@ -95,7 +96,7 @@ class WaveNull:
         modes = fft.fft(spectrum, axis=2)
         wave_numbers = np.abs(fft.fftfreq(self._sectors, 1.0 / self._sectors)).round().astype(np.int64)
         alike = fft.ifft(modes * self._mode_gain[:, wave_numbers], axis=2)
-        drawn = fft.irfft(alike * self._amplitude, 2 * self._frames, axis=1)[:, self._slots]
+        drawn = fft.irfft(alike * self._spectra.amplitude, 2 * self._frames, axis=1)[:, self._slots]
         drawn[:, self._missing] = np.nan
         return np.asarray(np.moveaxis(drawn[:, self._used], 0, 2))
 
@@ -106,24 +107,7 @@ def frame_slots(series: EdgeSeries) -> IntArray:
     return slots if (np.diff(slots) > 0).all() else np.arange(len(slots))
 
 
-def mirrored_amplitudes(series: FloatArray) -> FloatArray:
-    """Amplitudes (T + 1, S) of spectra of series (T, S) with their mirror images.
-
-    The fine shape is the mean of all sectors', the broad shape each sector's own: a single spectrum is so
-    rough that neighbours would not come out as alike as they are.
-    """
-    filled = interpolated(series)
-    filled = np.where(np.isfinite(filled), filled, 0.0)
-    centred = filled - filled.mean(axis=0)
-    power = np.abs(fft.rfft(np.concatenate([centred, centred[::-1]]), axis=0)) ** 2
-    power[0] = power[1]
-    broad = gaussian_filter1d(power, len(series) / _OWN_SHAPE, axis=0, mode="nearest")
-    mean = gaussian_filter1d(power.mean(axis=1), _FINE, mode="nearest")
-    shape = broad / np.where(broad.mean(axis=1) > 0, broad.mean(axis=1), 1.0)[:, None]
-    return np.asarray(np.sqrt(mean[:, None] * shape))
-
-
 def _smooth(by_mode: FloatArray) -> FloatArray:
-    """Levels that change little from mode to mode, as those of neighbours that are alike do."""
-    whole = np.concatenate([by_mode[:0:-1], by_mode])  # modes below 0 are their mirror images
-    return np.asarray(gaussian_filter1d(whole, SMOOTH, mode="nearest")[len(by_mode) - 1 :])
+    """Levels and slopes (2, M + 1) that change little from mode to mode; modes below 0 are mirror images."""
+    whole = np.concatenate([by_mode[:, :0:-1], by_mode], axis=1)
+    return np.asarray(gaussian_filter1d(whole, SMOOTH, mode="nearest")[:, by_mode.shape[1] - 1 :])
