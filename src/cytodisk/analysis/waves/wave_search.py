@@ -80,7 +80,8 @@ class WaveSearch:
         self.highest = highest_mode(series.values.shape[1], how.max_mode)
         self._weights = mode_weights(series.lengths[used], np.isfinite(self.values), self.highest)
         self.modes: ComplexArray = modes_of(self.values[:, :, None], self._weights)[:, :, 0]
-        self._variance = float(np.nanmean(np.nanvar(self.values, axis=0)))
+        known = np.isfinite(self.values).any(axis=0)
+        self._variance = float(np.nanvar(self.values[:, known], axis=0).mean())
 
     def power(self, movies: FloatArray) -> FloatArray:
         """Power (K, C, R) of movies (T, S, R)."""
