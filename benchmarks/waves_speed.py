@@ -4,11 +4,11 @@
 
 Waves that run or stand along an edge of 60 µm, of random speed (0.05 to 2 µm/s), direction, mode (1 to 4),
 sectors (12, 24 or 60) and frames per period (8 to 20), with as many periods as the row says and up to a
-fifth more, and noise of 0.3 to 1 times the wave's standard deviation: with equal sectors, unequal ones of known length, and a cell that turns
-while sectors do not. Prints for each: the share of the waves whose speed is within 10 % (of a standing
-wave: the period), whose mode is right, and whose direction is (from −1 to 1) within 0.1 of the truth, the
-median error of the speed, and the share with p ≤ 0.05 and the right kind. Ends with status 1 unless all
-speeds and directions are within 10 % in 95 % of the trials of each row.
+fifth more, and noise of 0.3 to 1 times the wave's standard deviation: with equal sectors, unequal ones of
+known length, and a cell that turns while sectors do not. Prints for each: the share of the waves whose
+speed is within 10 % (of a standing wave: the period), whose mode is right, and whose direction is (from −1
+to 1) within 0.1 of the truth, the median error of the speed, and the share with p ≤ 0.05 and the right
+kind. Ends with status 1 unless all speeds and directions are within 10 % in 95 % of the trials of each row.
 """
 
 import argparse
