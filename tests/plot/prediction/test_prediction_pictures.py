@@ -72,6 +72,13 @@ def test_what_does_not_survive_is_a_broken_grey_line(ax: Axes, links: pd.DataFra
     assert len(cd.plot.network_key(doubtful=True)) == 1 + len(cd.plot.network_key())
 
 
+def test_what_noise_may_have_made_does_not_count(ax: Axes, links: pd.DataFrame) -> None:
+    links = links.assign(geometry=False, weaker=[True, True, False, False, False, False])
+    weaker, back = drawn_links(links)
+    assert (weaker.doubtful, back.doubtful) == (True, False)
+    assert cd.plot.draw_network(ax, links, ["Rac1", "velocity"])[0].get_linewidth() < 1.0
+
+
 def test_names_lie_apart_and_the_last_at_the_bottom(ax: Axes, links: pd.DataFrame) -> None:
     signals = ["Rac1", "RhoA", "Cdc42", "actin", "velocity"]
     cd.plot.draw_network(ax, links, signals)
@@ -111,7 +118,7 @@ def test_keys_name_what_is_drawn(links: pd.DataFrame) -> None:
     key = cd.plot.gain_key([THERE, BACK], names={"velocity": "edge"}, partial="without geometry", lost=True)
     labels = [handle.get_label() for handle in key]
     assert labels[:2] == ["Rac1 → edge", "edge → Rac1"]
-    assert labels[-2:] == ["without geometry", "not without geometry"]
+    assert labels[-2:] == ["without geometry", "not counted"]
     Figure().legend(handles=key)
 
 

@@ -62,6 +62,24 @@ def test_values_are_those_of_predict(study: MadeStudy, pair: Prediction) -> None
     assert (lags["low"] < lags["coefficient"]).all()
 
 
+def test_a_cleaner_copy_of_the_past_does_not_count(tmp_path: Path) -> None:
+    """The signal follows velocity, which is measured with noise: so it predicts velocity a little."""
+    random = np.random.default_rng(0)
+    true = np.zeros((300, 8))
+    for frame in range(1, 300):
+        true[frame] = 0.9 * true[frame - 1] + random.normal(size=8)
+    signal = np.roll(true, 1, axis=0) + 0.1 * random.normal(size=true.shape)
+    velocity = true + 1.5 * random.normal(size=true.shape)
+    made = made_activity({"Rac1": signal[:, None]}, velocity)
+    found = predict_study(made_study(tmp_path / "out", {0: made}), "Rac1", "velocity", **FEW)
+    there, back = found.links.to_dict("records")
+    assert there["q"] < 0.05
+    assert there["weaker"]
+    assert there["gain_reversed"] > 2 * there["gain"]
+    assert not back["weaker"]
+    assert "weaker direction" in found.cells["qc_flags"].item()
+
+
 def test_q_is_over_all_rows_of_the_cell(pair: Prediction) -> None:
     for _, rows in pair.links.groupby("cell"):
         ordered = rows.sort_values("p")

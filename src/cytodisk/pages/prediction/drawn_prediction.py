@@ -13,7 +13,7 @@ from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.settings_words import detrending, scope_words
 from cytodisk.pages.sheet import BOLD_MM, broken_lines
 from cytodisk.plot.layer_looks import layer_word, shown_layers
-from cytodisk.plot.prediction.link_looks import pairs_in
+from cytodisk.plot.prediction.link_looks import lost_in, pairs_in
 from cytodisk.runs.channel_names import shortened
 from cytodisk.runs.link_words import signal_words
 from cytodisk.store.predictions.prediction_store import Prediction
@@ -63,8 +63,8 @@ class DrawnPrediction:
 
     @property
     def lost(self) -> bool:
-        """Whether a link does not survive without geometry."""
-        return bool(self.links["geometry"].fillna(False).astype(bool).any())
+        """Whether there are links that do not count."""
+        return bool(lost_in(self.links).any())
 
     @property
     def shown_layers(self) -> list[int]:

@@ -20,11 +20,11 @@ class DrawnLink:
     ----------
     pair : (str, str)
     layers : tuple of int
-        In which q < 0.05 and it survives without geometry; all significant ones of a doubtful link.
+        In which q < 0.05 and nothing speaks against it; all significant ones of a doubtful link.
     gain, effect : float
         In the strongest of these layers.
     doubtful : bool
-        Whether no layer survives.
+        Whether geometry, or noise of measurement alone, may have made it in all layers.
     """
 
     pair: tuple[str, str]
@@ -40,8 +40,8 @@ def drawn_links(links: pd.DataFrame, *, cell: int = 0) -> list[DrawnLink]:
     Parameters
     ----------
     links : DataFrame
-        `links` of a study's prediction: cell, source, target, layer, gain, q and effect; geometry where it
-        is known.
+        `links` of a study's prediction: cell, source, target, layer, gain, q and effect; geometry and weaker
+        where they are known.
     cell : int
 
     Returns

@@ -54,8 +54,8 @@ def draw_gain_profile(
     ----------
     ax : Axes
     links : DataFrame
-        `links` of a study's prediction: cell, source, target, layer and gain; threshold, q, gain_partial and
-        geometry where they are known.
+        `links` of a study's prediction: cell, source, target, layer and gain; threshold, q, gain_partial,
+        geometry and weaker where they are known.
     cell : int
     pairs : sequence of (source, target), optional
         Two at most; by default the first two of the table, which are both directions of one pair.
@@ -67,9 +67,9 @@ def draw_gain_profile(
     Returns
     -------
     list of Line2D
-        One a pair. A mark is full where q < 0.05, open where it is not, a cross where the link does not
-        survive without geometry; the band below the broken line is where 95 % of shifted sources lie. A
-        bar from a full mark ends where the gain stands without geometry.
+        One a pair. A mark is full where q < 0.05, open where it is not, a cross where it does not count, as
+        geometry or noise of measurement alone may have made it. The band below the dotted line is where 95 %
+        of shifted sources lie. A bar from a full mark ends where the gain stands without geometry.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def gain_key(
     partial : str
         What the bars are, such as "without geometry"; empty for none.
     lost : bool
-        Whether a link does not survive.
+        Whether there are links that do not count.
 
     Returns
     -------
@@ -156,7 +156,7 @@ def gain_key(
     if partial:
         handles.append(Line2D([], [], color="0.35", label=partial, **PARTIAL_LOOK))
     if lost:
-        handles.append(Line2D([], [], label=f"not {partial or 'without geometry'}", **grey, **LOST_LOOK))
+        handles.append(Line2D([], [], label="not counted", **grey, **LOST_LOOK))
     return handles
 
 

@@ -49,9 +49,9 @@ def draw_link_layers(
     Returns
     -------
     list of Rectangle
-        Where q < 0.05: vermilion where more of the source is followed by more of the target, blue by less;
-        a grey outline where it does not survive without geometry. A dot is a layer in which nothing was
-        found; one that could not be tested is empty.
+        Where q < 0.05: vermilion where more of the source is followed by more of the target, blue by less; a
+        grey outline where it does not count, as geometry or noise of measurement alone may have made it. A
+        dot is a layer in which nothing was found; one that could not be tested is empty.
 
     Raises
     ------
@@ -103,6 +103,6 @@ def _square(row: Mapping[Any, Any], place: int) -> Rectangle:
     side = _LEAST + (_MOST - _LEAST) * np.sqrt(share)
     colour = MORE_COLOUR if row["effect"] > 0 else LESS_COLOUR
     look: Any = {"facecolor": colour, "edgecolor": "none"}
-    if row.get("geometry") in (True, 1):
+    if any(row.get(name) in (True, 1) for name in ("geometry", "weaker")):
         look = {"facecolor": "none", "edgecolor": FAINT_COLOUR, "linewidth": 0.8}
     return Rectangle((float(row["layer"]) - 0.5 * side, place - 0.5 * side), side, side, **look)

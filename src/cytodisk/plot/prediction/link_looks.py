@@ -68,11 +68,24 @@ def of_pair(rows: pd.DataFrame, pair: tuple[str, str]) -> pd.DataFrame:
     return found
 
 
+NOT_COUNTED = "not counted: geometry, or the weaker direction"
+"""Words for links that do not survive without geometry, or that noise of measurement alone would make."""
+
+
 def lost_in(rows: pd.DataFrame) -> pd.Series[bool]:
-    """Which rows do not survive without geometry; none where that is not known."""
-    if "geometry" not in rows:
-        return pd.Series(False, index=rows.index)
-    return rows["geometry"].fillna(False).astype(bool)
+    """Which rows do not count: none where neither column is there.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        geometry says that a link does not survive without geometry, weaker that noise of measurement alone
+        would make it.
+    """
+    lost = pd.Series(False, index=rows.index)
+    for name in ("geometry", "weaker"):
+        if name in rows:
+            lost |= rows[name].fillna(False).astype(bool)
+    return lost
 
 
 def arrow_words(pair: tuple[str, str], names: Mapping[str, str] | None = None) -> str:

@@ -13,7 +13,14 @@ from matplotlib.patches import FancyArrowPatch
 
 from cytodisk.errors import ParameterError
 from cytodisk.plot.prediction.drawn_links import DrawnLink, drawn_links, layers_words
-from cytodisk.plot.prediction.link_looks import FAINT_COLOUR, LESS_COLOUR, MORE_COLOUR, percent, percent_words
+from cytodisk.plot.prediction.link_looks import (
+    FAINT_COLOUR,
+    LESS_COLOUR,
+    MORE_COLOUR,
+    NOT_COUNTED,
+    percent,
+    percent_words,
+)
 from cytodisk.plot.style import LINE_COLOUR, NUMBER_SIZE, TEXT_SIZE
 
 _BEND = 0.25  # of an arrow, so that there and back lie beside each other
@@ -40,8 +47,8 @@ def draw_network(
     ax : Axes
         Its lines are taken away.
     links : DataFrame
-        `links` of a study's prediction: cell, source, target, layer, gain, q and effect; geometry where it
-        is known.
+        `links` of a study's prediction: cell, source, target, layer, gain, q and effect; geometry and weaker
+        where they are known.
     signals : sequence of str
         Two or more, in their order around the circle; the last, usually velocity, stands at the bottom.
     cell : int
@@ -52,9 +59,9 @@ def draw_network(
     -------
     list of FancyArrowPatch
         A link that ends in a point: more of the source is followed by more of the target; in a bar: by less.
-        The thicker, the more error it takes away; on it stands how much, and of four links
-        or fewer in which layers. A broken grey
-        line is a link that does not survive without geometry.
+        The thicker, the more error it takes away; on it stands how much, and of four links or fewer in which
+        layers. A thin broken grey line is a link that does not count: geometry, or noise of measurement
+        alone, may have made it.
 
     Raises
     ------
@@ -103,7 +110,7 @@ def network_key(*, doubtful: bool = False) -> list[Any]:
     Parameters
     ----------
     doubtful : bool
-        Whether a link does not survive without geometry.
+        Whether there are links that do not count.
 
     Returns
     -------
@@ -126,7 +133,7 @@ def network_key(*, doubtful: bool = False) -> list[Any]:
     ]
     if doubtful:
         look: Any = {"color": FAINT_COLOUR, "linestyle": (0, (3, 1.5))}
-        handles.append(Line2D([], [], label="not without geometry", **look))
+        handles.append(Line2D([], [], label=NOT_COUNTED, **look))
     return handles
 
 
@@ -149,7 +156,7 @@ def _draw_arrow(
         places[link.pair[1]],
         arrowstyle="-|>,head_length=3.2,head_width=1.9" if more else "|-|,widthA=0,widthB=2.6",
         connectionstyle=f"arc3,rad={_BEND}",
-        linewidth=_THIN + (_THICK - _THIN) * float(np.clip(share, 0.0, 1.0)),
+        linewidth=_THIN + (_THICK - _THIN) * float(np.clip(0.0 if link.doubtful else share, 0.0, 1.0)),
         linestyle=(0, (3, 1.5)) if link.doubtful else "-",
         color=FAINT_COLOUR if link.doubtful else MORE_COLOUR if more else LESS_COLOUR,
         patchA=boxes[link.pair[0]],

@@ -21,6 +21,7 @@ from cytodisk.runs.correlate.verdict import (
 )
 from cytodisk.runs.findings.finding import listed
 from cytodisk.runs.findings.layer_names import numbers_words
+from cytodisk.runs.predict.prediction_verdict import WEAKER
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 
 _KINDS = ("layer", "cluster")
@@ -35,6 +36,7 @@ _DOUBTS = {
     VARIANCE_CHANGE: "the fluctuations grow or shrink in the movie, which makes p too small",
     STEADY_OSCILLATION: "two steady oscillations always agree at some lag",
     HEAVY_TAILS: "a few extreme values may have made it",
+    WEAKER: "it is the weaker of both directions, and noise of measurement alone may make it",
 }
 _BEARING = (
     "unreadable frames",

@@ -16,7 +16,7 @@ from cytodisk.runs.findings.finding import Finding, capital, listed
 from cytodisk.runs.findings.layer_names import layer_name, numbers_words
 from cytodisk.runs.link_words import less_error, signal_words
 from cytodisk.runs.partial_words import SIGNIFICANT
-from cytodisk.runs.predict.prediction_verdict import Direction, JudgedLink, directions, strongest
+from cytodisk.runs.predict.prediction_verdict import WEAKER, Direction, JudgedLink, directions, strongest
 from cytodisk.store.predictions.prediction_store import Prediction
 from cytodisk.store.study import Study
 
@@ -84,7 +84,8 @@ def pooled_finding(study: Study, found: Prediction) -> Finding | None:
         same = [way for way in ways if (way.source, way.target) == (source, target)]
         told.append(_pooled_direction(study, str(source), str(target), rows, same))
         there = rows.loc[rows["q"] < SIGNIFICANT, "gain_excess"]
-        size = max([size, *there.astype(float)])
+        if not _mostly_weaker(same):
+            size = max([size, *there.astype(float)])
     if found.is_network:
         told = [words for words in told if " does not predict " not in words] or [
             "no signal predicts another in any layer"
@@ -113,7 +114,14 @@ def _pooled_direction(
         f"{pair.format('predicts')} in {numbers_words('layer', layers)}{most}: {less_error(best['gain'])} "
         f"(q = {best['q']:.2g}); {effect_words(source, target, _mean(effects))}; by itself in "
         f"{sum(bool(way.clear) for way in ways)} of {len(ways)} cells"
+        f"{f', but {doubt_words([WEAKER])}' if _mostly_weaker(ways) else ''}"
     )
+
+
+def _mostly_weaker(ways: list[Direction]) -> bool:
+    """Whether a direction is the weaker one in half of the cells or more in which it is significant."""
+    some = [any(WEAKER in one.doubts for one in way.judged) for way in ways if way.judged]
+    return 2 * sum(some) >= len(some) > 0
 
 
 def effect_words(source: str, target: str, effect: float) -> str:

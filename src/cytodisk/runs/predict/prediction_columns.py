@@ -59,6 +59,19 @@ LINKS: Columns = (
         "q < 0.05, but not without geometry, or less than a quarter of gain_excess is left without it",
     ),
     Column(
+        "gain_reversed",
+        pa.float64(),
+        "nat",
+        "gain of the same source on reversed time, where what is true turns around",
+    ),
+    Column(
+        "weaker",
+        pa.bool_(),
+        "",
+        "q < 0.05, but the other direction is stronger, and noise of measurement alone would make this one: "
+        "it gains less than half of gain_reversed, and the other one more than its own",
+    ),
+    Column(
         "stress",
         pa.string(),
         "",

@@ -13,7 +13,7 @@ from cytodisk.runs.link_words import is_of_velocity, jitters
 from cytodisk.runs.partial_words import SIGNIFICANT
 from cytodisk.store.predictions.prediction_store import Prediction
 
-JITTER, GEOMETRY_UNTESTED = "jitter", "geometry not tested"
+JITTER, GEOMETRY_UNTESTED, WEAKER = "jitter", "geometry not tested", "weaker direction"
 DRIFTING, RESTARTED = "drifting series", "tracking started anew"
 
 
@@ -121,6 +121,8 @@ def strongest(links: list[JudgedLink]) -> JudgedLink:
 
 
 def _doubts(found: Prediction, row: Any, link: dict[Any, Any]) -> Iterator[str]:
+    if link["weaker"]:
+        yield WEAKER
     if is_of_velocity(link) and jitters(row):
         yield JITTER
     if found.settings.get("geometry"):

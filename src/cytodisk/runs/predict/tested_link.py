@@ -11,6 +11,7 @@ import pandas as pd
 import xarray as xr
 
 from cytodisk.analysis.correlation.peaks import false_discovery
+from cytodisk.analysis.prediction.direction_support import weaker_direction
 from cytodisk.analysis.prediction.predict import predict
 from cytodisk.analysis.prediction.prediction_parameters import PredictionParameters
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
@@ -32,6 +33,7 @@ _NUMBERS = (
     "n",
     "p",
     "threshold",
+    "gain_reversed",
 )
 _WHOLE = ("order", "source_order", "n")
 _PARTIAL = ("gain", "gain_excess", "p")
@@ -153,10 +155,21 @@ def links_table(rows: pd.DataFrame) -> pd.DataFrame:
         name: table[name].to_numpy(dtype=np.float64) for name in table if table[name].dtype.kind == "f"
     }
     table["geometry"] = does_not_survive(columns)
+    table["weaker"] = (table["q"] < SIGNIFICANT).to_numpy() & _weaker(table)
     for name in _WHOLE:
         table[name] = table[name].round().astype("Int64")
     known = [column.name for column in LINKS if column.name in table]
     return table[known]
+
+
+def _weaker(table: pd.DataFrame) -> BoolArray:
+    """Rows that noise of measurement alone would make, by what the other direction has in the same layer."""
+    keys, gains = ["source", "target", "layer"], ["gain", "gain_reversed"]
+    back = table[[*keys, *gains]].rename(columns={"source": "target", "target": "source"})
+    both = table[[*keys, *gains]].merge(back, "left", keys, suffixes=("", "_back"))
+    return weaker_direction(
+        both["gain"], both["gain_back"], both["gain_reversed"], both["gain_reversed_back"]
+    )
 
 
 def does_not_survive(columns: Mapping[Any, FloatArray]) -> BoolArray:

@@ -60,6 +60,26 @@ def jitter(study: Study) -> Iterator[QCFlag]:
         )
 
 
+def weaker_direction(study: Study) -> Iterator[QCFlag]:
+    """Significant links that noise of measurement alone would make, as the other direction is stronger."""
+    places = []
+    for names, found, row in _rows(study):
+        links = _of_cell(found.links, row)
+        weaker = links[links["weaker"].fillna(False).astype(bool)].to_dict("records")
+        if weaker:
+            told = [f"{_arrow(link)}, layer {link['layer']}" for link in weaker]
+            places.append(_place(row, names, "; ".join(told)))
+    if places:
+        yield QCFlag(
+            "weaker direction",
+            f"the weaker direction may be noise of measurement in {counted(len(places), 'prediction')}",
+            "Where the target drives the source and is measured with noise, the source holds a cleaner copy "
+            "of the target's past, and predicts it a little. On reversed time such a link gains far more.",
+            "Believe the stronger direction alone, unless a sharper measurement shows both.",
+            tuple(places),
+        )
+
+
 def common_driver(study: Study) -> Iterator[QCFlag]:
     """Significant links where signals of the study were not given."""
     places: list[Place] = []
@@ -181,6 +201,7 @@ def left_out(study: Study) -> Iterator[QCFlag]:
 
 PREDICTION_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     geometry,
+    weaker_direction,
     jitter,
     common_driver,
     stress,
@@ -226,10 +247,7 @@ def _unknown(found: Prediction, row: Any) -> str:
     """Significant links of which too few frames are left without geometry, in words; empty for none."""
     links = _significant(found, row)
     unknown = links[links["gain_partial"].isna()]
-    told = [
-        f"{shown_name(one['source'])} → {shown_name(one['target'])}, layer {one['layer']}"
-        for one in unknown.to_dict("records")
-    ]
+    told = [f"{_arrow(one)}, layer {one['layer']}" for one in unknown.to_dict("records")]
     return f"too few frames for {'; '.join(told)}" if told else ""
 
 
@@ -238,3 +256,7 @@ def _lost(one: Any) -> str:
     words = f"{shown_name(str(one.source))} → {shown_name(str(one.target))}, layer {one.layer}"
     gains = [less_error(max(gain, 0.0)) for gain in (one.gain, one.gain_partial)]
     return f"{words}: {gains[0].removesuffix(' less error')} → {gains[1]}"
+
+
+def _arrow(link: Any) -> str:
+    return f"{shown_name(link['source'])} → {shown_name(link['target'])}"
