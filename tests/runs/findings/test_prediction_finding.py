@@ -26,7 +26,7 @@ def link(source: str, target: str, layer: int, q: float, **more: Any) -> dict[st
     known = {"cell": 0, "source": source, "target": target, "given": "", "layer": layer, "q": q}
     known |= {"gain": 0.05, "gain_excess": 0.04, "order": 2, "source_order": 3, "effect": 0.2, "n": 500}
     known |= {"gain_partial": 0.045, "gain_excess_partial": 0.035, "q_partial": q, "geometry": False}
-    known |= {"gain_reversed": 0.05, "weaker": False}
+    known |= {"gain_reversed": 0.05, "weaker": False, "drifting": 0.0}
     return known | {"p": q, "stress": "", "status": "ok", "reason": ""} | more
 
 
@@ -34,7 +34,7 @@ def found_with(study: MadeStudy, rows: list[dict[str, Any]], **more: Any) -> Unw
     """A prediction of these links, and of a cell that nothing speaks against but what is given."""
     cell = {"cell": 0, "status": "ok", "reason": "", "frames": 120, "gaps": 0, "surrogates": 999}
     cell |= {"jitter": 0.0, "velocity_jitter": 0.01, "geometry_not_tested": "", "restarts": 0}
-    cell |= {"drifting": 0.0, "drifting_signal": "", "not_given": "RhoA"}
+    cell |= {"drifting": 0.0, "not_given": "RhoA"}
     settings = {"geometry": True, "given": None, "signals": list(PAIR), "surrogates": 999}
     own = {name: more.pop(name) for name in list(more) if name in cell}
     names = more.pop("names", PAIR)
@@ -82,7 +82,7 @@ def test_both_ways_say_which_is_stronger(study: MadeStudy) -> None:
         ({}, {"jitter": -0.1}, "masks that jitter make"),
         ({"stress": "common pulse"}, {}, "a single pulse of the whole cell"),
         ({"weaker": True}, {}, "it is the weaker of both directions, and noise of measurement alone"),
-        ({}, {"drifting": 0.6, "drifting_signal": "Rac1"}, "the level of many series drifts"),
+        ({"drifting": 0.6}, {}, "the level of many series drifts"),
         ({}, {"restarts": 1}, "tracking started anew"),
         ({"gain_partial": float("nan")}, {}, "what the motion of the cell alone would give was not tested"),
         ({}, {"geometry": False}, "what the motion of the cell alone would give was not tested"),
@@ -167,7 +167,7 @@ def test_words() -> None:
         ({}, {"velocity_jitter": 0.3}, "jitter", "30% of velocity's variance"),
         ({"stress": "heavy tails"}, {}, "heavy tails", "Rac1 → velocity"),
         ({"weaker": True}, {}, "weaker direction", "Rac1 → velocity, layer 0"),
-        ({}, {"drifting": 0.6, "drifting_signal": "Rac1"}, "drifting series", "60% of the series of Rac1"),
+        ({"drifting": 0.6}, {"drifting": 0.6}, "drifting series", "60% of the series of Rac1 and velocity"),
         ({"gain_partial": float("nan")}, {}, "geometry not tested", "too few frames for Rac1 → velocity"),
         ({}, {"geometry_not_tested": "no images"}, "geometry not tested", "no images"),
         ({}, {"frames": 30}, "few frames", "30 frames"),

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -23,7 +20,7 @@ from cytodisk.analysis.correlation.jitter_mark import (
 from cytodisk.analysis.pairs.pair_correlation import correlate_pairs
 from cytodisk.analysis.pairs.window_distances import window_distances
 from cytodisk.arrays import IntArray
-from cytodisk.errors import ParameterError, StationarityWarning
+from cytodisk.errors import ParameterError
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.correlate.cluster_rows import with_clusters
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
@@ -34,7 +31,7 @@ from cytodisk.runs.correlate.stress_columns import stress_row
 from cytodisk.runs.run_options import Progress
 from cytodisk.runs.used_series.cell_controls import CellControls
 from cytodisk.runs.used_series.chosen_series import chosen_sectors, chosen_series
-from cytodisk.runs.used_series.jitter_of_series import largest_jitter
+from cytodisk.runs.used_series.jitter_of_series import drift_is_told, largest_jitter
 from cytodisk.runs.used_series.progress_phases import phases
 from cytodisk.store.study import Study
 from cytodisk.windows.study_grid import polar_grid_of
@@ -80,7 +77,7 @@ class CellCorrelation:
         asked = self._controls.asked
         steps = phases(progress, 1 + 2 * asked + options.pairs)
         common = dict(options.part(PairCorrelationParameters))
-        with _shares_in_the_table():
+        with drift_is_told():
             correlations = cross_correlate(
                 a,
                 b,
@@ -173,19 +170,11 @@ class CellCorrelation:
         common = dict(options.part(PairCorrelationParameters)) | surrogates
         sectors = chosen_sectors(options, grid.sectors)
         distances = window_distances(study.movie(cell), grid).isel(sector=sectors, other_sector=sectors)
-        with _shares_in_the_table():
+        with drift_is_told():
             found = correlate_pairs(a, b, self.max_lag, distances=distances, progress=progress, **common)
         table = as_table(found, ("along", "distance", "lag"))
         table.attrs["surrogates"] = found.attrs["surrogates"]
         return table
-
-
-@contextmanager
-def _shares_in_the_table() -> Iterator[None]:
-    """No warnings of series that drift: their shares are in the table of cells, and are told."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", StationarityWarning)
-        yield
 
 
 def _other(activity: xr.Dataset, with_: str, options: CorrelateParameters) -> xr.DataArray:

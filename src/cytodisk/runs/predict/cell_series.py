@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.analysis.controls.without_controls import FEWEST_FRAMES, without_controls
-from cytodisk.analysis.correlation.prepared_series import drifts, prepare_series
+from cytodisk.analysis.correlation.prepared_series import prepare_series
 from cytodisk.errors import ParameterError
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.predict.predict_parameters import PredictParameters
@@ -54,17 +54,6 @@ class CellSeries:
             known = series.notnull().any([str(dim) for dim in series.dims if dim != "time"]).to_numpy()
             missing[: self.frames - (name in VELOCITIES)] |= ~known[: self.frames - (name in VELOCITIES)]
         return int(missing.sum())
-
-    @property
-    def drifting(self) -> tuple[float, str]:
-        """Largest share of a signal's series that drift, and the name of that signal."""
-        found = (0.0, "")
-        for name, series in self.raw.items():
-            values = series.transpose("time", ...).to_numpy()
-            known = np.isfinite(values).any(axis=0)
-            share = float(drifts(values)[known].mean()) if known.any() else 0.0
-            found = max(found, (share, name))
-        return found
 
 
 @dataclass(frozen=True)

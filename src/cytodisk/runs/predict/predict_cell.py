@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, permutations
 from typing import Any
@@ -16,13 +14,13 @@ from cytodisk.analysis.correlation.jitter_mark import velocity_jitter
 from cytodisk.analysis.prediction.prediction_parameters import HeldParameters, PredictionParameters
 from cytodisk.analysis.stress.stress_marks import stress_marks
 from cytodisk.arrays import IntArray
-from cytodisk.errors import ParameterError, StationarityWarning
+from cytodisk.errors import ParameterError
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.predict.cell_series import CellSeries, SeriesOfStudy, given_to
 from cytodisk.runs.predict.predict_parameters import PredictParameters
 from cytodisk.runs.predict.tested_link import TestedLink, links_table, tested_link
 from cytodisk.runs.run_options import Progress
-from cytodisk.runs.used_series.jitter_of_series import largest_jitter
+from cytodisk.runs.used_series.jitter_of_series import drift_is_told, largest_jitter
 from cytodisk.runs.used_series.progress_phases import phases
 from cytodisk.store.study import Study
 
@@ -109,14 +107,13 @@ class CellPrediction:
         return PredictedCell(links_table(table), pd.concat(lags, ignore_index=True), row, tuple(links))
 
     def _row(self, cell: int, series: CellSeries, links: Sequence[TestedLink]) -> dict[str, Any]:
-        drifting, which = series.drifting
         times = next(iter(series.raw.values()))["frame"].to_numpy()
         row: dict[str, Any] = {"status": "ok", "reason": "", "frames": series.frames, "gaps": series.gaps}
         row["surrogates"] = min(link.surrogates for link in links if link.raw is not None)
         row |= self._jitter(series)
         row |= {"partial_frames": series.partial_frames, "geometry_not_tested": series.not_tested}
-        row |= {"restarts": self._restarts(cell, times), "drifting": drifting, "drifting_signal": which}
-        return row
+        drifting = max((link.drifting for link in links if link.raw is not None), default=np.nan)
+        return row | {"restarts": self._restarts(cell, times), "drifting": drifting}
 
     def _jitter(self, series: CellSeries) -> dict[str, float]:
         """What jitter of the masks makes of velocity, and of its correlation with any channel."""
@@ -125,7 +122,7 @@ class CellPrediction:
             return {"jitter": 0.0, "velocity_jitter": np.nan}
         share = velocity_jitter(velocity)
         channels = [series.raw[name] for name in self.tested if name not in VELOCITIES]
-        with _drift_is_told():
+        with drift_is_told():
             steps = [largest_jitter(one, velocity, share) for one in channels]
         known = [step for step in steps if np.isfinite(step)]
         return {"jitter": max(known, key=abs, default=float("nan")), "velocity_jitter": share}
@@ -143,11 +140,3 @@ class CellPrediction:
         cells = self.study.cells
         rows = cells[(cells["cell"] == cell) & cells["frame"].isin(frames[1:])]
         return int((rows["restarted"].fillna("") != "").sum())
-
-
-@contextmanager
-def _drift_is_told() -> Iterator[None]:
-    """No warnings of series that drift: their share is in the table of cells."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", StationarityWarning)
-        yield

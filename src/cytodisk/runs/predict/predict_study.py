@@ -124,8 +124,7 @@ def _tables(
     cells = pd.DataFrame(rows)
     for name in ("frames", "gaps", "surrogates", "restarts"):
         cells[name] = cells[name].astype("Int64")
-    for name in ("geometry_not_tested", "drifting_signal"):
-        cells[name] = cells[name].fillna("")
+    cells["geometry_not_tested"] = cells["geometry_not_tested"].fillna("")
     links = [link for one in found.values() for link in one.tested]
     return {
         "links": under("links"),

@@ -78,6 +78,7 @@ LINKS: Columns = (
         "what makes p of independent series too small, with commas between: common pulse, restless episode, "
         "variance change, steady oscillation, heavy tails; empty for nothing",
     ),
+    Column("drifting", pa.float64(), "1", "share of series that drift, of source or target, the lesser"),
     Column("status", pa.string(), "", "ok or refused"),
     Column("reason", pa.string(), "", "why the link could not be tested in this layer; empty if it was"),
 )
@@ -152,8 +153,7 @@ CELLS: Columns = (
         "why geometry could not be regressed out; empty if it was, or was not to be",
     ),
     Column("restarts", pa.int64(), "", "number of frames in which tracking started anew"),
-    Column("drifting", pa.float64(), "1", "share of series that drift, of the signal with most"),
-    Column("drifting_signal", pa.string(), "", "that signal; empty if none drifts"),
+    Column("drifting", pa.float64(), "1", "largest drifting of a link"),
     Column("not_given", pa.string(), "", "signals of the study that were neither tested nor given"),
 )
 

@@ -131,7 +131,7 @@ def _doubts(found: Prediction, row: Any, link: dict[Any, Any]) -> Iterator[str]:
     elif "geometry" in found.settings:
         yield GEOMETRY_UNTESTED
     yield from filter(None, str(link["stress"] or "").split(", "))
-    if row["drifting"] > DRIFTING_SHARE:
+    if link["drifting"] > DRIFTING_SHARE:
         yield DRIFTING
     if row["restarts"] > 0:
         yield RESTARTED

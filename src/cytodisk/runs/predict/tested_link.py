@@ -19,6 +19,7 @@ from cytodisk.errors import ParameterError
 from cytodisk.runs.partial_words import SIGNIFICANT
 from cytodisk.runs.predict.prediction_columns import LINKS
 from cytodisk.runs.run_options import Progress
+from cytodisk.runs.used_series.jitter_of_series import drift_is_told
 
 LEAST_LEFT = 0.25
 """Share of a gain that must be left without geometry: half of a partial correlation is a quarter of it."""
@@ -36,6 +37,7 @@ _NUMBERS = (
     "gain_reversed",
 )
 _WHOLE = ("order", "source_order", "n")
+_ENDS = ("source", "target")
 _PARTIAL = ("gain", "gain_excess", "p")
 
 
@@ -72,6 +74,12 @@ class TestedLink:
         """How many shifted sources there were; 0 where it was refused."""
         return 0 if self.raw is None else int(self.raw.sizes.get("surrogate", 0))
 
+    @property
+    def drifting(self) -> float:
+        """Share of series that drift, of source or target, whichever is less; NaN where it was refused."""
+        shares = [] if self.raw is None else [self.raw.attrs[f"drifting_{one}"] for one in _ENDS]
+        return float(min(shares, default=np.nan))
+
     def rows(self, layers: IntArray) -> pd.DataFrame:
         """Rows of the table of links, one a layer, without q."""
         table = pd.DataFrame({"layer": layers})
@@ -86,7 +94,7 @@ class TestedLink:
         table["reason"] = [self._reason(int(layer)) for layer in layers]
         for place, (name, words) in enumerate(self._names().items()):
             table.insert(place, name, words)
-        return table.assign(stress=self.stress)
+        return table.assign(stress=self.stress, drifting=self.drifting)
 
     def lag_rows(self, interval_s: float | None) -> pd.DataFrame:
         """Rows of the table of lags: coefficients that the model has."""
@@ -100,7 +108,7 @@ class TestedLink:
         table = table[table["coefficient"].notna()].reset_index(drop=True)
         lag_s = table["lag"] * interval_s if interval_s is not None else np.nan
         table.insert(2, "lag_s", np.asarray(lag_s, dtype=np.float64) + np.zeros(len(table)))
-        for place, name in enumerate(("source", "target")):
+        for place, name in enumerate(_ENDS):
             table.insert(place, name, getattr(self, name))
         return table
 
@@ -138,7 +146,9 @@ def tested_link(
             continue
         try:
             beside = {name: some[name] for name in given}
-            found.append(predict(some[source], some[target], beside, progress=report, **how.model_dump()))
+            with drift_is_told():
+                made = predict(some[source], some[target], beside, progress=report, **how.model_dump())
+            found.append(made)
         except ParameterError as error:
             found.append(None)
             reason = reason or (str(error) if len(found) == 1 else "")

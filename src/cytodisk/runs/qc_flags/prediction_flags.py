@@ -149,8 +149,12 @@ def drifting_series(study: Study) -> Iterator[QCFlag]:
     for names, found, row in _rows(study):
         if row["drifting"] > DRIFTING_SHARE:
             first = first or (names, found)
-            note = f"{row['drifting']:.0%} of the series of {shown_name(str(row['drifting_signal']))}"
-            places.append(_place(row, names, note))
+            links = _of_cell(found.links, row)
+            told = dict.fromkeys(
+                " and ".join(sorted((shown_name(link["source"]), shown_name(link["target"]))))
+                for link in links[links["drifting"] > DRIFTING_SHARE].to_dict("records")
+            )
+            places.append(_place(row, names, f"{row['drifting']:.0%} of the series of {', '.join(told)}"))
     if first is not None:
         names, found = first
         advice = "Use a calm part of the movie with --frames."

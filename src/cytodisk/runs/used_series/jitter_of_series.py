@@ -1,6 +1,10 @@
-"""Jitter of the masks in what a signal has to do with velocity."""
+"""Jitter of the masks in what a signal has to do with velocity, and drift that is told elsewhere."""
 
 from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 import xarray as xr
@@ -8,6 +12,7 @@ import xarray as xr
 from cytodisk.analysis.correlation.correlation_parameters import Detrend
 from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer, cross_correlate
 from cytodisk.analysis.correlation.jitter_mark import jitter_step
+from cytodisk.errors import StationarityWarning
 
 _LEAST_LAG, _LAG = 6, 10
 
@@ -43,3 +48,11 @@ def largest_jitter(
     found = cross_correlate(signal, velocity, lag, detrend=detrend, min_pairs=min_pairs)
     steps = jitter_step(correlation_by_layer(found), velocity_share=velocity_share).to_numpy()
     return float(steps[np.abs(steps).argmax()])
+
+
+@contextmanager
+def drift_is_told() -> Iterator[None]:
+    """No warnings of series that drift: their share is in a table, and is told."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", StationarityWarning)
+        yield
