@@ -14,12 +14,19 @@ from cytodisk.analysis.waves.depth_modes import DepthWaves, depth_cells
 from cytodisk.analysis.waves.depth_surrogates import DepthNull
 from cytodisk.analysis.waves.depth_travel import DepthTravel, depth_travel
 from cytodisk.analysis.waves.disk_series import DiskSeries, disk_series
+from cytodisk.analysis.waves.edge_modes import sector_angles
 from cytodisk.analysis.waves.edge_series import check_shown, named_values
 from cytodisk.analysis.waves.edge_waves import ROTATING, SIGNIFICANT
 from cytodisk.analysis.waves.mode_spectrum import Bands, bands, refined_frequency
 from cytodisk.analysis.waves.wave_background import background, wave_scores
 from cytodisk.analysis.waves.wave_order import null_orders, order_score, p_value
-from cytodisk.analysis.waves.wave_phase import demodulated, pair_amplitudes, persistence, travel_direction
+from cytodisk.analysis.waves.wave_phase import (
+    demodulated,
+    mode_field,
+    pair_amplitudes,
+    persistence,
+    travel_direction,
+)
 from cytodisk.analysis.waves.wave_surrogates import frame_slots
 from cytodisk.analysis.waves.waves_parameters import WaveSearchParameters
 from cytodisk.arrays import ComplexArray, FloatArray
@@ -108,7 +115,8 @@ def disk_waves(
         By layer: layer_inward_speed_um_s, from the phase of neighbouring layers; layer_lag_s, by which the
         wave is later than in the first layer; layer_direction and layer_speed, around the cell; layer_power,
         the variance of the wave in that layer over that in all; depth_um. By time, layer and sector: phase
-        and amplitude. By surrogate: order_null.
+        and amplitude of the window's own values, wave_phase and wave_amplitude of the mode that was found. By
+        surrogate: order_null.
 
     Raises
     ------
@@ -239,16 +247,29 @@ def _dataset(named: xr.DataArray, series: DiskSeries, found: DiskWave) -> xr.Dat
     field = np.stack(
         [demodulated(layer.values, layer.seconds, found.frequency) for layer in series.layers], axis=1
     )
-    everywhere = np.full(named.shape, np.nan + 0j)
-    everywhere[:, series.numbers] = field
-    data["phase"] = (named.dims, np.angle(everywhere), {"units": "rad"})
-    data["amplitude"] = (named.dims, np.abs(everywhere), {"units": named.attrs.get("units", "a.u.")})
+    unit = named.attrs.get("units", "a.u.")
+    for prefix, one in (("", field), ("wave_", _wave(series, found))):
+        everywhere = np.full(named.shape, np.nan + 0j)
+        everywhere[:, series.numbers] = one
+        data[f"{prefix}phase"] = (named.dims, np.angle(everywhere), {"units": "rad"})
+        data[f"{prefix}amplitude"] = (named.dims, np.abs(everywhere), {"units": unit})
     data["order_null"] = ("surrogate", null_orders(found.null), {"units": "1"})
     coords: dict[str, Any] = {"time_s": ("time", series.layers[0].seconds, {"units": "s"})}
     for name in ("layer", "sector"):
         coords[name] = named[name].variable if name in named.coords else np.arange(named.sizes[name])
     coords |= {name: named[name].variable for name in ("time", "frame") if has_times(named, name)}
     return xr.Dataset(data, coords)
+
+
+def _wave(series: DiskSeries, found: DiskWave) -> ComplexArray:
+    """The wave of the mode that was found, (T, L, S)."""
+    used, layers = series.used, []
+    for layer, pair in zip(series.layers, found.pairs.transpose(2, 0, 1), strict=True):
+        wave = np.full(layer.values.shape, np.nan + 0j)
+        angles = sector_angles(layer.lengths[used])
+        wave[used] = mode_field(pair, found.seconds, found.frequency, found.mode, angles)
+        layers.append(wave)
+    return np.stack(layers, axis=1)
 
 
 def _by_layer(count: int, series: DiskSeries, found: DiskWave) -> dict[str, Any]:

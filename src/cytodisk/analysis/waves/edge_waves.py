@@ -9,9 +9,16 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.analysis.time_steps import has_times
+from cytodisk.analysis.waves.edge_modes import sector_angles
 from cytodisk.analysis.waves.edge_series import EdgeSeries, frame_times, named_values, sector_lengths
 from cytodisk.analysis.waves.wave_order import null_orders, order_score, p_value
-from cytodisk.analysis.waves.wave_phase import demodulated, pair_amplitudes, persistence, travel_direction
+from cytodisk.analysis.waves.wave_phase import (
+    demodulated,
+    mode_field,
+    pair_amplitudes,
+    persistence,
+    travel_direction,
+)
 from cytodisk.analysis.waves.wave_search import WaveFound, mode_shares, strongest_wave
 from cytodisk.analysis.waves.waves_parameters import WaveSearchParameters
 from cytodisk.taking import takes
@@ -54,11 +61,12 @@ def edge_waves(
         "oscillating" (mode 0) or "none" (p above 0.05); persistence_s, how long phase and direction keep, at
         most the movie; order, the score of order, a normal quantile: 0 ± 1 without waves; p.
 
-        By time and sector: phase, of the wave's period in radians, and amplitude. By `around`, the number of
-        waves: power, the share of the variance that each mode has at the periods that can be seen, and
-        power_threshold, which 95 % of the surrogates stay below. By frequency and `travelling`, the number
-        of waves, below 0 for those that run towards lower sectors: spectrum, their share. By surrogate:
-        order_null. The attrs are the settings, and shortest_period_s and longest_period_s.
+        By time and sector: phase, of the wave's period in radians, 0 at a crest, and amplitude, both of the
+        sector's own values; wave_phase and wave_amplitude, of the mode that was found. By `around`, the
+        number of waves: power, the share of the variance that each mode has at the periods that can be seen,
+        and power_threshold, which 95 % of the surrogates stay below. By frequency and `travelling`, the
+        number of waves, below 0 for those that run towards lower sectors: spectrum, their share. By
+        surrogate: order_null. The attrs are the settings, and shortest_period_s and longest_period_s.
 
     Raises
     ------
@@ -90,8 +98,9 @@ def edge_waves(
     seconds = frame_times(named, frame_interval_s)
     lengths, edge_um = sector_lengths(edge_length_um, named.shape)
     series = EdgeSeries(named.to_numpy().astype(np.float64), seconds, lengths, edge_um)
-    found = strongest_wave(series.from_sector(_first_sector(series)), how, progress)
-    return _dataset(named, series, found).assign_attrs(_attrs(series, found, how))
+    start = _first_sector(series)
+    found = strongest_wave(series.from_sector(start), how, progress)
+    return _dataset(named, series, found, start).assign_attrs(_attrs(series, found, how))
 
 
 def wave_kind(mode: int, direction: float, p: float) -> str:
@@ -112,7 +121,7 @@ def _first_sector(series: EdgeSeries) -> int:
     return int(np.argmax(((filled - mean * known) ** 2).sum(axis=0) / count))
 
 
-def _dataset(named: xr.DataArray, series: EdgeSeries, found: WaveFound) -> xr.Dataset:
+def _dataset(named: xr.DataArray, series: EdgeSeries, found: WaveFound, start: int) -> xr.Dataset:
     pair = pair_amplitudes(found.modes[:, found.mode], found.seconds, found.frequency)
     direction = travel_direction(pair) if found.mode else 0.0
     p = p_value(found.score, found.null)
@@ -139,6 +148,11 @@ def _dataset(named: xr.DataArray, series: EdgeSeries, found: WaveFound) -> xr.Da
     data["spectrum"] = (("frequency", "travelling"), signed, {"units": "1"})
     data["phase"] = (("time", "sector"), np.angle(field), {"units": "rad"})
     data["amplitude"] = (("time", "sector"), np.abs(field), {"units": named.attrs.get("units", "a.u.")})
+    angles = np.roll(sector_angles(series.from_sector(start).lengths), start, axis=1)
+    wave = np.full(field.shape, np.nan + 0j)
+    wave[series.used] = mode_field(pair, found.seconds, found.frequency, found.mode, angles[series.used])
+    data["wave_phase"] = (("time", "sector"), np.angle(wave), {"units": "rad"})
+    data["wave_amplitude"] = (("time", "sector"), np.abs(wave), data["amplitude"][2])
     data["order_null"] = ("surrogate", null_orders(found.null), {"units": "1"})
     coords: dict[str, Any] = {
         "time_s": ("time", series.seconds, {"units": "s"}),

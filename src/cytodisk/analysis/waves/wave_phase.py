@@ -56,6 +56,33 @@ def pair_amplitudes(mode: ComplexArray, seconds: FloatArray, frequency: float) -
     return np.stack([up, down], axis=1)
 
 
+def mode_field(
+    pair: ComplexArray, seconds: FloatArray, frequency: float, mode: int, angles: FloatArray
+) -> ComplexArray:
+    """The wave of one mode at every sector, as amplitude and phase.
+
+    Parameters
+    ----------
+    pair : ndarray of shape (T, 2) and dtype complex
+        Of `pair_amplitudes`.
+    seconds : ndarray of shape (T,) and dtype float
+    frequency : float
+        In 1/s.
+    mode : int
+    angles : ndarray of shape (T, S) and dtype float
+        Middles of the sectors, of `sector_angles`.
+
+    Returns
+    -------
+    ndarray of shape (T, S) and dtype complex
+        Its real part is the wave.
+    """
+    turn = np.exp(2j * np.pi * frequency * seconds)[:, None]
+    place = np.exp(1j * mode * angles)
+    down = pair[:, 1:] * turn * place
+    return np.asarray(down + pair[:, :1].conj() * turn * place.conj() if mode else down)
+
+
 def travel_direction(pair: ComplexArray) -> float:
     """From −1, all runs towards lower sectors, to 1, all towards higher ones; 0 stands."""
     up, down = (np.abs(pair) ** 2).sum(axis=0)
