@@ -76,9 +76,6 @@ from .analysis.pairs.window_distances import window_distances as window_distance
 from .analysis.correlation.prepared_series import prepare_series as prepare_series
 from .analysis.correlation.jitter_mark import jitter_step as jitter_step
 from .analysis.correlation.jitter_mark import velocity_jitter as velocity_jitter
-from .analysis.waves.disk_waves import disk_waves as disk_waves
-from .analysis.waves.edge_waves import edge_waves as edge_waves
-from .analysis.waves.waves_parameters import WaveSearchParameters as WaveSearchParameters
 from .analysis.stress.stress_marks import stress_marks as stress_marks
 from .analysis.controls.geometry_controls import geometry_controls as geometry_controls
 from .analysis.controls.without_controls import without_controls as without_controls
@@ -88,6 +85,11 @@ from .analysis.event_average import average_around as average_around
 # Prediction: does the past of one signal predict another
 from .analysis.prediction.predict import predict as predict
 from .analysis.prediction.prediction_parameters import PredictionParameters as PredictionParameters
+
+# Waves: do they run around the cell, or inwards
+from .analysis.waves.edge_waves import edge_waves as edge_waves
+from .analysis.waves.disk_waves import disk_waves as disk_waves
+from .analysis.waves.waves_parameters import WaveSearchParameters as WaveSearchParameters
 
 # Shapes
 from .analysis.shape.features import shape_features as shape_features
