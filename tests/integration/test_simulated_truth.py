@@ -64,3 +64,11 @@ def test_a_wave_along_the_edge_has_its_kind_speed_and_direction(
         assert found.direction < -0.8
     else:
         assert abs(found.direction) < 0.3
+
+
+@pytest.mark.slow
+def test_a_wave_through_a_signal_runs_inwards_with_the_speed_that_was_put_in(tmp_path: Path) -> None:
+    movie = cd.simulate.wave_movie("inward", 4, wavelength_um=4.0, contrast=0.4, **CELL)
+    found = cd.run_waves(study_of(movie, tmp_path, 18), "wave", geometry=False).cells.iloc[0]
+    assert found.inside == "inwards"
+    assert found.inward_speed == pytest.approx(movie.truth["inward_speed_um_s"], rel=0.3)

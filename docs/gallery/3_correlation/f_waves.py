@@ -74,3 +74,38 @@ cd.plot.draw_wave_kymograph(
 right.bar(found["around"], 100 * found["power"], color="#0072B2")
 right.set(xlabel="waves around the cell", ylabel="variance (%)")
 plt.show()
+
+# %%
+# Inside the cell
+# ---------------
+# A signal can run inwards or outwards, too. ``disk_waves`` takes all layers, and the
+# depth of windows below the edge. This one is simulated by window: a spiral, whose
+# crests are 8 µm apart on the way to the centre.
+spiral = cd.simulate.wave_series(
+    "spiral",
+    seed=0,
+    frames=60,
+    sectors=36,
+    layers=6,
+    mode=1,
+    noise=1.0,
+    wavelength_um=8,
+)
+inside = cd.disk_waves(spiral, depth_um=spiral["depth_um"])
+print("kind:", inside["kind"].item(), " p =", inside["p"].item())
+print(
+    f"inwards {inside['inward_speed_um_s'].item():.3f} µm/s "
+    f"(truth {spiral.attrs['inward_speed_um_s']:.3f}), "
+    f"around {inside['speed'].item():.4f} turns/s "
+    f"(truth {spiral.attrs['speed']:.4f})"
+)
+
+figure, axes = plt.subplots(
+    1, 5, figsize=(7.4, 1.9), width_ratios=(1, 1, 1, 1, 0.06), layout="constrained"
+)
+grid = cd.polar_windows(layers=6, sectors=36)
+for ax, frame in zip(axes, (20, 25, 30, 35), strict=False):
+    cd.plot.draw_phase_on_disk(ax, grid, inside["phase"].isel(time=frame))
+    ax.set_title(f"{float(inside['time_s'][frame]):.0f} s")
+cd.plot.phase_key(axes[4])
+plt.show()

@@ -131,6 +131,8 @@ def movie(kind: MovieKind = "migrating", seed: int = 0, **settings: Any) -> Simu
     --------
     cell_with_signal : One frame.
     movie_with_nuclei : With a nucleus.
+    predicting_movie : A cell whose channels predict its edge.
+    wave_movie : A cell along whose edge a wave runs.
     coupled_series : Series of windows, without a cell.
 
     Examples

@@ -63,6 +63,8 @@ def independent_series(
     See Also
     --------
     coupled_series : Series that do hang together.
+    predicting_series : Series that predict each other.
+    wave_series : Waves along the edge.
 
     Notes
     -----
