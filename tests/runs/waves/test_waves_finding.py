@@ -173,6 +173,11 @@ def test_flags_of_the_run_are_told(study: SeriesStudy) -> None:
     assert ", but QC flags are raised that bear on it: area jumps." in found.sentences[0]
 
 
+def test_what_is_wrong_with_a_signal_says_nothing_of_the_edge(study: SeriesStudy) -> None:
+    assert told(study, made({}), "saturated signal").kind == "found"
+    assert told(study, made({"layer": 0}, signal="Rac1"), "saturated signal").kind == "doubtful"
+
+
 def test_several_cells_are_summed_up(study: SeriesStudy, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cytodisk.runs.qc_flags.study_flags.run_flags", lambda _: [])
     none = {"kind": "none", "way": ""}

@@ -21,6 +21,14 @@ from cytodisk.runs.findings.wave_words import chance_words, speed_words, time_wo
 from cytodisk.runs.qc_flags.wave_doubts import has_inside
 from cytodisk.store.waves.waves_store import Waves
 
+_FAINT = 0.5
+"""Of the root mean square of a layer's amplitudes: where a wave is weaker, its phase is mostly noise."""
+
+
+def faint(amplitude: pd.Series[float]) -> pd.Series[bool]:
+    """Where a wave is too weak to have a phase, by the amplitudes of a layer."""
+    return ~(amplitude >= _FAINT * float(np.sqrt((amplitude**2).mean())))
+
 
 @dataclass(frozen=True, eq=False)
 class DrawnWaves:
@@ -90,12 +98,22 @@ class DrawnWaves:
 
     @cached_property
     def phase(self) -> xr.DataArray:
-        """Phase of the drawn layer by (time, sector), with its frames and times."""
-        rows = self.rows(self.waves.phase).sort_values(["frame", "sector"])
+        """Phase of the drawn layer by (time, sector), with its frames and times; NaN where it is faint."""
+        rows = self.rows(self._phases).sort_values(["frame", "sector"])
         table = rows["phase"].to_numpy().reshape(len(self.frames), -1)
         coords = self.movie.scale.time_coords(np.asarray(self.frames))
         found = xr.DataArray(table, coords, ("time", "sector"))
         return found.assign_attrs(self.movie.scale.attrs)
+
+    @cached_property
+    def _phases(self) -> pd.DataFrame:
+        """Phases of the cell; empty where the wave is faint: too weak for a phase that means something."""
+        own = self.waves.phase[self.waves.phase["cell"] == self.movie.cell]
+        layers = [layer for _, layer in own.groupby("layer", dropna=False)]
+        for name in ("phase", "phase_inside"):
+            size = name.replace("phase", "amplitude")
+            layers = [one.assign(**{name: one[name].where(~faint(one[size]))}) for one in layers]
+        return pd.concat(layers)
 
     @cached_property
     def values(self) -> xr.DataArray:
@@ -109,9 +127,9 @@ class DrawnWaves:
         return one.transpose("time", "sector").isel(time=slice(first, first + len(self.frames))).load()
 
     def phase_at(self, frame: int) -> FloatArray:
-        """Phase in one frame, of shape (sectors,) for velocity, else (layers, sectors); NaN where unknown."""
-        rows = self.waves.phase
-        rows = rows[(rows["cell"] == self.movie.cell) & (rows["frame"] == frame)]
+        """Phase in one frame, of shape (sectors,) for velocity, else (layers, sectors); NaN where faint."""
+        rows = self._phases
+        rows = rows[rows["frame"] == frame]
         if self.layer is None:
             return rows.sort_values("sector")["phase"].to_numpy(dtype=np.float64)
         table = np.full((self.movie.grid.layers, self.movie.grid.sectors), np.nan)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 
+from cytodisk.arrays import FloatArray
 from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.sheet import Sheet
 from cytodisk.pages.waves.drawn_waves import DrawnWaves
-from cytodisk.plot.field_of_view import field_of_view, frame_field
+from cytodisk.plot.field_of_view import Extent, field_of_view, frame_field
 from cytodisk.plot.movie.activity_maps import share_labels
 from cytodisk.plot.style import SINGLE_COLUMN_MM, WIDE_MM, colour_bar, scale_bar
 from cytodisk.plot.time_raster import bar_beside
@@ -48,7 +50,8 @@ def kymograph_page(one: DrawnWaves) -> Sheet:
     if phase is not None:
         draw_wave_phase(axes[1], phase, scale=one.movie.scale)
         phase_key(bar_beside(axes[1]))
-        titles.append("phase of the wave")
+        grey = "" if np.isfinite(phase).all() else "; grey: too weak to have one"
+        titles.append(f"phase of the wave{grey}")
     share_labels(axes)
     for ax, words in zip(axes, titles, strict=True):
         ax.set_title(words, loc="left", y=1.0, pad=2.5, parse_math=False)
@@ -111,19 +114,19 @@ def phase_page(one: DrawnWaves) -> Sheet | None:
     title = f"phase of {one.signal_name} through one period"
     heading = one.heading(WIDE_MM, title if one.by_velocity else f"{title}, {what}", inside=one.inside)
     windows = [one.movie.windows(frame) for frame in frames]
-    extent = field_of_view([each.disk.outline_yx for each in windows])
-    tall = (extent[1] - extent[0]) / (extent[3] - extent[2])
+    fields = _alike_fields([each.disk.outline_yx for each in windows])
+    tall = (fields[0][1] - fields[0][0]) / (fields[0][3] - fields[0][2])
     height = _PANEL * float(np.clip(tall, 0.6, _TALLEST))
     top = heading.height_mm + 1.5
     below = top + height + 7.0
-    sheet = Sheet(below + _PANEL + 3.0)
+    sheet = Sheet(below + _PANEL + 5.5)
     heading.write(sheet)
-    for place, (frame, each) in enumerate(zip(frames, windows, strict=True)):
+    phases = [one.phase_at(frame) for frame in frames]
+    for place, (frame, each, phase) in enumerate(zip(frames, windows, phases, strict=True)):
         left = LEFT_MM + 4.0 + place * (_PANEL + _PANEL_GAP)
-        phase = one.phase_at(frame)
         cell = sheet.axes(left, top, _PANEL, height)
         draw_phase_on_cell(cell, each, phase, scale=one.movie.scale)
-        frame_field(cell, extent)
+        frame_field(cell, fields[place])
         _one_scale_bar(cell, one, place)
         sheet.text(left + 0.5 * _PANEL, top - 1.2, _time(one, frame), ha="center")
         disk = sheet.axes(left, below, _PANEL, _PANEL)
@@ -131,7 +134,20 @@ def phase_page(one: DrawnWaves) -> Sheet | None:
         draw_phase_on_disk(disk, one.movie.disk_grid, phase, way=way, number_sectors=True)
     key = sheet.axes(LEFT_MM + 4.0 + len(frames) * (_PANEL + _PANEL_GAP), top, 2.0, below + _PANEL - top)
     phase_key(key)
+    if not all(np.isfinite(phase).all() for phase in phases):
+        sheet.text(LEFT_MM, sheet.height_mm - 1.2, "grey: the wave is too weak to have a phase", color="0.3")
     return sheet
+
+
+def _alike_fields(outlines: Sequence[FloatArray]) -> list[Extent]:
+    """Fields of view of one size, each around its own cell, as cells move on between frames."""
+    own = [field_of_view([outline]) for outline in outlines]
+    high, wide = (max(each[k + 1] - each[k] for each in own) for k in (0, 2))
+    fields = []
+    for top, bottom, left, right in own:
+        y, x = 0.5 * (top + bottom), 0.5 * (left + right)
+        fields.append((y - 0.5 * high, y + 0.5 * high, x - 0.5 * wide, x + 0.5 * wide))
+    return fields
 
 
 def _time(one: DrawnWaves, frame: int) -> str:

@@ -25,6 +25,7 @@ from cytodisk.runs.qc_flags.wave_doubts import has_inside, wave_doubts
 from cytodisk.store.study import Study
 from cytodisk.store.waves.waves_store import Waves
 
+_OF_SIGNALS = ("saturated signal", "clipped signal", "signal drift")  # which the edge knows nothing of
 _KINDS = ("rotating", "standing", "oscillating")
 
 
@@ -48,6 +49,8 @@ def waves_finding(study: Study, found: Waves, cell: int, flagged: Sequence[str] 
     if rows.empty:
         return None
     row = rows.iloc[0]
+    if found.signal in VELOCITIES:
+        flagged = [name for name in flagged if name not in _OF_SIGNALS]
     if row["kind"] not in _KINDS:
         return (_inside_alone if has_inside(row) else _nothing)(study, found, row, flagged)
     doubts = wave_doubts(row)

@@ -199,17 +199,18 @@ def _lag(period: float) -> int:
 
 
 def with_inside(phase: pd.DataFrame, whole: xr.Dataset | None) -> pd.DataFrame:
-    """The table of phases with that of the wave through all layers, where there is one."""
+    """The table of phases with those and the amplitudes of the wave through all layers, if there is one."""
+    names = ("phase", "amplitude")
     if whole is None:
-        return phase.assign(phase_inside=math.nan)
-    values = whole["phase"].transpose("time", "layer", "sector")
-    frames = {int(frame): place for place, frame in enumerate(values["frame"].to_numpy())}
+        return phase.assign(**{f"{name}_inside": math.nan for name in names})
+    frames = {int(frame): place for place, frame in enumerate(whole["frame"].to_numpy())}
     places = (
         phase["frame"].map(frames).to_numpy(dtype=np.int64),
         phase["layer"].to_numpy(dtype=np.int64),
         phase["sector"].to_numpy(dtype=np.int64),
     )
-    return phase.assign(phase_inside=values.to_numpy()[places])
+    values = {name: whole[name].transpose("time", "layer", "sector").to_numpy() for name in names}
+    return phase.assign(**{f"{name}_inside": one[places] for name, one in values.items()})
 
 
 def with_whole_numbers(table: pd.DataFrame) -> pd.DataFrame:

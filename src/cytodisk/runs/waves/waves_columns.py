@@ -158,6 +158,7 @@ WAVE_TABLES: dict[str, Columns] = {
             "rad",
             "phase of the wave through all layers at once; empty for velocity",
         ),
+        Column("amplitude_inside", pa.float64(), "", "its amplitude there, in the signal's unit"),
     ),
     "depths": (
         CELL,
