@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from cytodisk.errors import ParameterError
 from cytodisk.pages.prediction.prediction_files import write_prediction_figures
 from cytodisk.runs.predict.predict_study import predict_study
+from cytodisk.runs.qc_flags.one_prediction import UnwrittenPrediction
 from made_study import MadeStudy, made_activity, made_study, predicting_activity
 
 FEW: Any = {"max_order": 3, "surrogates": 39, "geometry": False}
@@ -65,6 +66,16 @@ def test_nothing_found_is_said(tmp_path: Path, drawn: list[Figure]) -> None:
     found = predict_study(there, "RhoA", "velocity", **FEW)
     write_prediction_figures(there, found)
     assert "No signal predicts another beyond chance." in texts(drawn[0])
+
+
+def test_what_does_not_count_is_said(study: MadeStudy, drawn: list[Figure]) -> None:
+    found = predict_study(study, "Rac1", "velocity", **FEW | {"surrogates": 99}, name="lost")
+    tables = {name: getattr(found, name) for name in ("links", "lags", "pooled", "cells")}
+    tables["links"] = tables["links"].assign(geometry=[True, False, False, False])
+    lost = UnwrittenPrediction(found.path, "Rac1", "velocity", "lost", found.settings, tables)
+    write_prediction_figures(study, lost)
+    for figure in drawn[:2]:
+        assert "not counted: geometry, or noise of measurement, may make it" in texts(figure)
 
 
 def test_without_shifted_sources_there_is_no_network(study: MadeStudy, drawn: list[Figure]) -> None:

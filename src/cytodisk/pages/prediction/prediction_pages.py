@@ -35,6 +35,7 @@ _STEP, _STEP_WITH_NAMES = 25.0, 29.0  # mm
 _MOST_PANELS = 8
 _NETWORK, _NETWORK_OF_TWO = 46.0, 22.0  # mm
 _ROW = 4.2  # mm, of a link in the table of layers
+_NOT_COUNTED = "not counted: geometry, or noise of measurement, may make it"
 _NAMES_MM = 41.0
 
 
@@ -57,6 +58,7 @@ def network_page(one: DrawnPrediction) -> Sheet | None:
     ]
     if not drawn_links(one.links, cell=one.cell):
         notes = ["No signal predicts another beyond chance."]
+    notes += [_NOT_COUNTED] * one.lost
     first_note = below + _LINE * -(-len(key) // 2) + 2.5
     sheet = Sheet(first_note + _LINE * len(notes) - 1.5, SINGLE_COLUMN_MM)
     heading.write(sheet)
@@ -80,7 +82,7 @@ def profile_page(one: DrawnPrediction) -> Sheet:
     named = (("first", "second"), ("second", "first")) if several else pairs[0]
     chance = bool(one.links["threshold"].notna().any())
     key = gain_key(named, names=names, chance=chance, partial=one.partial_words, lost=one.lost)
-    first = heading.height_mm + _LINE * -(-len(key) // 2) + 2.0 + 3.0 * several
+    first = heading.height_mm + _LINE * (-(-len(key) // 2) + one.lost) + 2.0 + 3.0 * several
     high, gap = (_PROFILE, 0.0) if not several else (_PROFILE_OF_MANY, _PROFILE_GAP)
     step = high + gap
     sheet = Sheet(first + step * len(pairs) - gap + 12.5, SINGLE_COLUMN_MM)
@@ -88,6 +90,9 @@ def profile_page(one: DrawnPrediction) -> Sheet:
     top = min(1.6 * float(np.nanmax(most, initial=1.0)), 100.0)
     heading.write(sheet)
     sheet.key(LEFT_MM, heading.height_mm - 2.0, key, 2, **_KEY_STYLE)
+    if one.lost:
+        below = heading.height_mm + _LINE * -(-len(key) // 2) + 0.5
+        sheet.text(LEFT_MM, below, _NOT_COUNTED, color="0.3")
     for number, both in enumerate(pairs):
         ax = sheet.axes(_LEFT, first + number * step, SINGLE_COLUMN_MM - _LEFT - _RIGHT, high)
         depths = one.movie.depths if both == pairs[-1] else None

@@ -19,6 +19,7 @@ from cytodisk.plot.correlation.curve_key import LOST_LOOK
 from cytodisk.plot.prediction.link_looks import (
     ALPHA,
     BACK_COLOUR,
+    NOT_COUNTED,
     THERE_COLOUR,
     arrow_words,
     lost_in,
@@ -156,7 +157,7 @@ def gain_key(
     if partial:
         handles.append(Line2D([], [], color="0.35", label=partial, **PARTIAL_LOOK))
     if lost:
-        handles.append(Line2D([], [], label="not counted", **grey, **LOST_LOOK))
+        handles.append(Line2D([], [], label=NOT_COUNTED, **grey, **LOST_LOOK))
     return handles
 
 

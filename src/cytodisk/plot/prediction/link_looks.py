@@ -68,7 +68,7 @@ def of_pair(rows: pd.DataFrame, pair: tuple[str, str]) -> pd.DataFrame:
     return found
 
 
-NOT_COUNTED = "not counted: geometry, or the weaker direction"
+NOT_COUNTED = "not counted"
 """Words for links that do not survive without geometry, or that noise of measurement alone would make."""
 
 
