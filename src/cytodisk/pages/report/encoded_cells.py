@@ -12,7 +12,11 @@ from cytodisk.pages.report.encode import json_for_script
 from cytodisk.pages.report.pictures import Pictures, encode_frames, size_of
 from cytodisk.pages.report.shown_cell import MOST_ARRAY_BYTES, ShownCell
 from cytodisk.pages.report.shown_correlations import MOST_CURVE_NUMBERS, pairs_of
+from cytodisk.pages.report.shown_predictions import predictions_of
+from cytodisk.pages.report.shown_waves import waves_of
 from cytodisk.pages.report.words import reduced_words
+from cytodisk.runs.findings.doubt_words import bearing_flags
+from cytodisk.runs.findings.finding import Finding
 from cytodisk.runs.findings.movie_finding import movie_finding
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.store.inputs.study_signal import FoundSignal
@@ -104,9 +108,15 @@ class MovieCells:
         while sum(map(size_of, pictures)) > most and len(pictures) > 1:  # larger than those judged by
             cell, pictures = cell.every_frames(2 * cell.every), pictures[::2]
         pairs, left_out = pairs_of(cell, int(self.share(cell.cell) * MOST_CURVE_NUMBERS))
-        finding = list(movie_finding(cell.study, cell.cell, self.flags).sentences)
+        raised = tuple(bearing_flags(self.flags, cell.cell))
+        waves, more_left_out = waves_of(cell, raised)
+        left_out = [*left_out, *more_left_out]
+        predictions = predictions_of(cell, raised)
+        finding = _findings(movie_finding(cell.study, cell.cell, self.flags), [*predictions, *waves])
         data = cell.as_json() | {
             "pairs": pairs,
+            "predictions": predictions,
+            "waves": waves,
             "finding": finding,
             "reduced": reduced_words(cell, self.found, boxes, left_out),
             "has_pixels": any(frame["channels"] for frame in pictures),
@@ -120,6 +130,17 @@ class MovieCells:
             "pictures": pictures,
         }
         return {"json": json_for_script(data), "finding": finding}
+
+
+def _findings(first: Finding, others: Sequence[dict[str, Any]]) -> list[str]:
+    """Sentences of the page: those of correlations and motion, and the first of predictions and waves.
+
+    What was found beyond doubt comes first.
+    """
+    told = [one for one in others if one["finding"]]
+    before = [one for one in told if one["kind"] == "found" != first.kind]
+    after = [one for one in told if one not in before]
+    return [*(one["finding"][0] for one in before), *first.sentences, *(one["finding"][0] for one in after)]
 
 
 def _shifted(progress: Progress | None, before: int, whole: int) -> Progress | None:

@@ -16,6 +16,7 @@ from cytodisk.pages.report.template import rendered
 from cytodisk.pages.report.words import MOST_PLACES, page_words
 from cytodisk.plot.correlation.correlation_peaks import LAG_COLOURS
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS
+from cytodisk.plot.waves.phase_colours import PHASE_COLOURS
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.study_flags import qc_flags
 from cytodisk.store.inputs.study_signal import FoundSignal, shown_signal
@@ -33,6 +34,8 @@ _SCRIPTS = (
     "frame",
     "views",
     "controls",
+    "network",
+    "results",
     "main",
 )
 
@@ -121,6 +124,7 @@ def movie_page(cell: ShownCell, found: FoundSignal, progress: Progress | None) -
             "signal": palette(SIGNAL_COLOURS),
             "correlation": palette(DIVERGING_COLOURS),
             "lag": palette(LAG_COLOURS),
+            "phase": palette(PHASE_COLOURS),
         },
     }
     words |= {
@@ -128,6 +132,8 @@ def movie_page(cell: ShownCell, found: FoundSignal, progress: Progress | None) -
         "several": len(words["cells"]) > 1,
         "signal": bool(cell.channels),
         "correlated": bool(study.correlations),
+        "predicted": bool(study.predictions),
+        "waves": bool(study.wave_signals),
         "nuclei": bool(cell.grid.nucleus_layers),
         "strips": strips,
         "finding": texts[cell.cell]["finding"],

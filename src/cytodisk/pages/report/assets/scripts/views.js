@@ -169,11 +169,12 @@
   };
 
   // Time × sector as an image; values by sector and time.
-  const drawMap = (name, key, values, { limits, palette, unit, xLabel }) => {
+  const drawMap = (name, key, values, { limits, palette, unit, xLabel }, more = null) => {
     const { frames, sectors } = page.data;
     const yNames = page.numberedSectors(sectors).map((at) => ({ at, label: String(at) }));
     const options = { x: timeEnds(), y: [-0.5, sectors - 0.5], yNames, xLabel, yLabel: "sector", label: `${name} by time and sector` };
-    drawChart(name, [...key, limits], options, ({ marks, left, top, right, bottom }) => {
+    drawChart(name, [...key, limits], options, (chart) => {
+      const { marks, left, top, right, bottom } = chart;
       const map = values();
       const canvas = Object.assign(document.createElement("canvas"), { width: frames.length, height: sectors });
       const pixels = Uint32Array.from(map, (value) => page.packedColour(value, limits, packed(palette)));
@@ -183,6 +184,7 @@
       const place = { x: left, y: top, width: right - left, height: bottom - top, preserveAspectRatio: "none" };
       marks.append(svg("image", { href: canvas.toDataURL(), ...place, style: "image-rendering: pixelated" }));
       page.drawBar(byId(`bar-${name}`), limits, page.study.palettes[palette], unit);
+      if (more) more(chart);
       return { values: [...map], limits };
     });
   };
@@ -336,7 +338,7 @@
   };
 
   // What the charts through time share: lines at moments, and the highlighted window.
-  const MAPS = ["activity", "velocity"];
+  const MAPS = ["activity", "velocity", "waves"];
   const drawMoments = () => {
     const { index, hover } = page.state;
     const at = page.focus();
@@ -363,6 +365,8 @@
       });
     }
   };
+
+  Object.assign(page, { when, drawChart, drawMap, chartLine: line, chartDot: dot }); // for the other sections
 
   // What a cell of the study lacks is not on the page.
   const showParts = () => {
@@ -426,8 +430,9 @@
     drawActivity();
     drawVelocity();
     drawStrips();
-    drawMoments();
     if (byId("figure-profile")) drawProfile();
+    page.drawResults();
+    drawMoments();
     if (page.data.pairs.length) {
       when("peaks", [cell, pair, peak, window], drawPeaks);
       when("curve words", [cell, pair, window, layer, byId("figure-curve").clientWidth], drawCurve);
