@@ -65,7 +65,7 @@ def _prediction(cell: ShownCell, found: Prediction, flagged: tuple[str, ...]) ->
 
 def _link(cell: ShownCell, source: str, target: str, rows: pd.DataFrame) -> dict[str, Any]:
     known = rows.dropna(subset="q")
-    best = known.loc[known["q"].idxmin()] if len(known) else None
+    best = known.iloc[int(known["q"].to_numpy().argmin())] if len(known) else None
     return {
         "source": source,
         "target": target,

@@ -112,6 +112,8 @@
 
   const waveLayer = (found) => (found.edge ? 0 : found.phase[page.state.layer] ? page.state.layer : found.chosen);
 
+  const isWave = ({ layers }, layer) => layers.some((row) => row.layer === layer && row.p < 0.05);
+
   const drawKymograph = () => {
     const found = waves();
     const layer = waveLayer(found);
@@ -129,7 +131,7 @@
       : found.edge ? { limits: [-limit, limit], palette: "correlation", unit: units.velocity }
         : { limits: channel.layer_limits[layer], palette: "signal", unit: channel.unit };
     page.drawMap("waves", [section, value("wave-signal"), layer, byPhase, byId("wave-crests").checked], map, { ...look, xLabel }, (chart) => {
-      if (!byId("wave-crests").checked) return;
+      if (!byId("wave-crests").checked || !isWave(found, layer)) return;
       const bar = chart.toY(0) - chart.toY(1);
       let d = "";
       for (const [place, sector] of crests(phase)) {
@@ -139,7 +141,8 @@
       const dark = found.edge || byPhase;
       chart.marks.append(svg("path", { d, stroke: dark ? "black" : "white", "stroke-width": 1.3, class: "crests" }));
     });
-    write("waves-title", `${found.edge ? "edge velocity" : `${found.signal}, layer ${layer}`}; bars: crests of the wave`);
+    const bars = isWave(found, layer) ? "bars: crests of the wave" : "no wave beyond chance, so no crests";
+    write("waves-title", `${found.edge ? "edge velocity" : `${found.signal}, layer ${layer}`}; ${bars}`);
   };
 
   const COLUMNS = [
