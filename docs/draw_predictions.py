@@ -18,10 +18,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from textwrap import fill
 
 import pandas as pd
 import xarray as xr
-from draw_populations import shrink
+from draw_populations import WRAP, shrink
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -83,7 +84,7 @@ def example() -> None:
         grid = f"--layers {LAYERS} --sectors {SECTORS}"
         command(here, f"movie masks.tif --signal signal.ome.tif {grid} --out out --figures 0")
         said = command(here, f"predict out --source {CHANNEL} --target velocity --figures 0")
-        (TARGET / "said.txt").write_text(f"{said.strip()}\n", encoding="utf-8")
+        (TARGET / "said.txt").write_text(wrapped(said), encoding="utf-8")
         study = cd.open_study(here / "out")
         activity = study.activity(0)
         signal, velocity = activity["mean"].sel(channel=CHANNEL), activity["velocity"]
@@ -129,6 +130,14 @@ def command(here: Path, words: str) -> str:
     arguments = [sys.executable, "-m", "cytodisk", *words.split()]
     done = subprocess.run(arguments, cwd=here, check=True, capture_output=True, text=True)
     return done.stdout
+
+
+def wrapped(said: str) -> str:
+    """What a command prints, in lines that fit the page, without the one that names a folder."""
+    lines = [line for line in said.strip().splitlines() if not line.startswith("results:")]
+    indents = [" " * (2 + len(line) - len(line.lstrip())) for line in lines]
+    filled = [fill(line, WRAP, subsequent_indent=by) for line, by in zip(lines, indents, strict=True)]
+    return "\n".join(filled) + "\n"
 
 
 def draw(truth: cd.simulate.DrivenMovie, signal: xr.DataArray, velocity: xr.DataArray) -> None:

@@ -2,8 +2,8 @@
 
     docs/draw_waves.py
 
-Writes into `docs/source/guides/waves`: `waves.png`, and `said.txt` and `inside.txt`, the lines of `cytodisk
-waves` for the edge and for a signal, on simulated cells.
+Writes into `docs/source/guides/waves`: `waves.png`; `said.txt` and `inside.txt`, the lines of `cytodisk
+waves` for the edge and for a signal of a simulated cell; and `truth.txt`, what was put in.
 """
 
 import os
@@ -11,7 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from draw_populations import shrink
-from draw_predictions import CHANNEL, command, renamed
+from draw_predictions import CHANNEL, command, renamed, wrapped
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -39,8 +39,11 @@ def main() -> None:
         inside = command(here, f"waves running --signal {CHANNEL} --figures 0")
         command(here, "waves standing --figures 0")
         print(said, inside, sep="\n")
-        (TARGET / "said.txt").write_text(told(said), encoding="utf-8")
-        (TARGET / "inside.txt").write_text(told(inside), encoding="utf-8")
+        (TARGET / "said.txt").write_text(wrapped(said), encoding="utf-8")
+        (TARGET / "inside.txt").write_text(wrapped(inside), encoding="utf-8")
+        words = "{:.1f} µm/min around in layer 0, {:.1f} µm/min inwards\n"
+        put_in = [60.0 * running.truth[name] for name in ("speed_um_s", "inward_speed_um_s")]
+        (TARGET / "truth.txt").write_text(words.format(*put_in), encoding="utf-8")
         draw(cd.open_study(here / "running"), cd.open_study(here / "standing"))
 
 
@@ -49,11 +52,6 @@ def store(cell: cd.simulate.DrivenMovie, here: Path, name: str) -> None:
     masks, signal = renamed(cell).write(here / f"files_{name}")
     grid = f"--layers {LAYERS} --sectors {SECTORS} --out {name} --figures 0"
     command(here, f"movie {masks} --signal {signal} {grid}")
-
-
-def told(said: str) -> str:
-    """What a command prints, without the line that names its folder."""
-    return "".join(f"{line}\n" for line in said.strip().splitlines() if not line.startswith("results:"))
 
 
 def draw(running: cd.Study, standing: cd.Study) -> None:
