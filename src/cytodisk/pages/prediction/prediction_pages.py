@@ -17,6 +17,9 @@ from cytodisk.plot.prediction.link_layers import draw_link_layers
 from cytodisk.plot.prediction.link_looks import (
     ALPHA,
     BACK_COLOUR,
+    FAINT_COLOUR,
+    LESS_COLOUR,
+    MORE_COLOUR,
     THERE_COLOUR,
     arrow_words,
     of_pair,
@@ -154,7 +157,8 @@ def _panels(one: DrawnPrediction) -> list[tuple[tuple[str, str], int, str]]:
     for link in drawn_links(one.links, cell=one.cell):
         rows = of_pair(one.links, link.pair)
         best = rows[rows["layer"].isin(link.layers)].sort_values("gain")["layer"].iloc[-1]
-        found.append((link.pair, int(best), THERE_COLOUR if link.effect > 0 else BACK_COLOUR))
+        colour = MORE_COLOUR if link.effect > 0 else LESS_COLOUR
+        found.append((link.pair, int(best), FAINT_COLOUR if link.doubtful else colour))
     return found[:_MOST_PANELS]
 
 
