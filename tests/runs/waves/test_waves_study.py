@@ -35,7 +35,7 @@ def test_numbers_are_those_of_the_function(tmp_path: Path) -> None:
     assert row["period"] == pytest.approx(10.0, rel=0.05)
     assert row["periods"] == pytest.approx(47 / row["period"])
     phase = found.phase.set_index(["frame", "sector"])["phase"].to_xarray()
-    np.testing.assert_array_equal(phase, expected["phase"])
+    np.testing.assert_array_equal(phase, expected["wave_phase"])
     assert found.phase["time_s"].max() == 230.0
     assert study.wave_signals == [("velocity",)]
     assert found.settings["surrogates"] == 19
@@ -83,7 +83,7 @@ def test_a_spiral_runs_inwards_and_around(tmp_path: Path) -> None:
     assert found.depths["depth"].tolist() == [0.5, 1.5, 2.5]
     np.testing.assert_allclose(found.depths["inward_speed"], 0.12, rtol=0.15)
     assert (np.diff(found.depths["lag_s"]) > 0).all()
-    expected = cd.disk_waves(values, depth_um=[0.5, 1.5, 2.5], **FEW)["phase"]
+    expected = cd.disk_waves(values, depth_um=[0.5, 1.5, 2.5], **FEW)["wave_phase"]
     inside = found.phase.set_index(["frame", "layer", "sector"])["phase_inside"].to_xarray()
     np.testing.assert_array_equal(inside, expected)
 

@@ -209,7 +209,7 @@ def with_inside(phase: pd.DataFrame, whole: xr.Dataset | None) -> pd.DataFrame:
         phase["layer"].to_numpy(dtype=np.int64),
         phase["sector"].to_numpy(dtype=np.int64),
     )
-    values = {name: whole[name].transpose("time", "layer", "sector").to_numpy() for name in names}
+    values = {name: whole[f"wave_{name}"].transpose("time", "layer", "sector").to_numpy() for name in names}
     return phase.assign(**{f"{name}_inside": one[places] for name, one in values.items()})
 
 

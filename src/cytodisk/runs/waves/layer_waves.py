@@ -145,7 +145,7 @@ class LayerWaves:
 
     def _phase(self, series: WaveSeries, found: xr.Dataset) -> pd.DataFrame:
         phase, amplitude = (
-            found[name].transpose("time", "sector").to_numpy() for name in ("phase", "amplitude")
+            found[name].transpose("time", "sector").to_numpy() for name in ("wave_phase", "wave_amplitude")
         )
         frames = series.values["frame"].to_numpy()
         sectors = phase.shape[1]

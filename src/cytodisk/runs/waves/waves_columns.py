@@ -150,8 +150,15 @@ WAVE_TABLES: dict[str, Columns] = {
         FRAME,
         TIME_S,
         SECTOR,
-        Column("phase", pa.float64(), "rad", "phase of the wave: 0 at a crest, π where it is lowest"),
-        Column("amplitude", pa.float64(), "", "half the way from lowest to crest, in the signal's unit"),
+        Column(
+            "phase",
+            pa.float64(),
+            "rad",
+            "phase of the wave that was found: 0 at a crest, π where it is lowest",
+        ),
+        Column(
+            "amplitude", pa.float64(), "", "half the way from its lowest to its crest, in the signal's unit"
+        ),
         Column(
             "phase_inside",
             pa.float64(),
