@@ -16,11 +16,19 @@ from cytodisk.runs.findings.finding import Finding, capital, listed
 from cytodisk.runs.findings.layer_names import layer_name, numbers_words
 from cytodisk.runs.link_words import less_error, signal_words
 from cytodisk.runs.partial_words import SIGNIFICANT
-from cytodisk.runs.predict.prediction_verdict import WEAKER, Direction, JudgedLink, directions, strongest
+from cytodisk.runs.predict.prediction_verdict import (
+    JITTER,
+    WEAKER,
+    Direction,
+    JudgedLink,
+    directions,
+    strongest,
+)
 from cytodisk.store.predictions.prediction_store import Prediction
 from cytodisk.store.study import Study
 
 _MOST_LINKS = 4  # of a network that are named
+_JITTER = "masks that jitter make each of them predict the other by themselves"
 _DRIVER = "a common driver that was not imaged can do the same"
 
 
@@ -114,7 +122,7 @@ def _pooled_direction(
         f"{pair.format('predicts')} in {numbers_words('layer', layers)}{most}: {less_error(best['gain'])} "
         f"(q = {best['q']:.2g}); {effect_words(source, target, _mean(effects))}; by itself in "
         f"{sum(bool(way.clear) for way in ways)} of {len(ways)} cells"
-        f"{f', but {doubt_words([WEAKER])}' if _mostly_weaker(ways) else ''}"
+        f"{f', but {_doubt_words([WEAKER])}' if _mostly_weaker(ways) else ''}"
     )
 
 
@@ -157,7 +165,7 @@ def _direction(study: Study, way: Direction) -> str:
     best = strongest(some)
     words = f"{pair.format('predicts')} in {layer_name(study, best.layer)}: {_numbers(study, best)}"
     if not best.clear:
-        why = _left(best) if best.lost else doubt_words(best.doubts)
+        why = _left(best) if best.lost else _doubt_words(best.doubts)
         words += f", but {why}: so it is no finding until that is settled"
         return words
     also = [one.layer for one in way.clear if one is not best and _same_sign(one, best)]
@@ -182,6 +190,13 @@ def _left(link: JudgedLink) -> str:
     if q < SIGNIFICANT:
         return "less than a quarter of that is left without geometry"
     return f"not without what the cell's motion alone would give (q = {q:.2g})"
+
+
+def _doubt_words(doubts: Sequence[str]) -> str:
+    """The first doubt in words, the others by name."""
+    first, *others = doubts
+    words = _JITTER if first == JITTER else doubt_words([first])
+    return f"{words} (also in doubt: {', '.join(others)})" if others else words
 
 
 def _compared(there: Direction, back: Direction) -> str:
