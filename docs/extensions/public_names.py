@@ -58,7 +58,7 @@ def groups(stub: Path) -> dict[str, list[str]]:
     for line in stub.read_text(encoding="utf-8").splitlines():
         if line.startswith("# ") and not line.startswith("# ruff"):
             title = line.removeprefix("# ")
-        elif name := re.fullmatch(r"from \.\S+ import \w+ as (\w+)", line):
+        elif name := re.fullmatch(r"(?:from \.\S+ import |    )\w+ as (\w+),?", line):
             if not title:
                 raise ValueError(f"{stub}: {name[1]} stands under no comment that names its group")
             found.setdefault(title, []).append(name[1])
