@@ -18,8 +18,8 @@ def test_a_short_run_prints_what_was_put_in_and_what_came_out(
     cell: dict[str, Any] = {"radius_px": 18.0, "sectors": 12}
     monkeypatch.setattr(moving_truth, "CELL", cell)
     monkeypatch.setattr(moving_truth, "PREDICT", {"one way": {"strength": 0.7, "edge_speed_px": 0.5}})
-    monkeypatch.setattr(moving_truth, "FRAMES", 60)
-    monkeypatch.setattr(moving_truth, "PERIODS", {0.5: 12})
+    monkeypatch.setattr(moving_truth, "FRAMES", 50)
+    monkeypatch.setattr(moving_truth, "PERIODS", {0.5: 10})
     moving_truth.run(1, ("predict", "waves"), map)
     said = capsys.readouterr().out
     for case in ("| one way |", "| running, 0.5 µm/s |", "| standing |"):
