@@ -72,7 +72,7 @@ def draw(running: cd.Study, standing: cd.Study) -> None:
 def draw_edge(ax: Axes, study: cd.Study, title: str, *, crests: bool) -> None:
     """Velocity by time and sector, with lines along the crests of a wave that runs."""
     velocity = study.activity(0)["velocity"]
-    phase = cd.edge_waves(velocity, study.scale.frame_interval_s)["phase"] if crests else None
+    phase = cd.edge_waves(velocity, study.scale.frame_interval_s)["wave_phase"] if crests else None
     cd.plot.draw_wave_kymograph(ax, velocity, phase, by_velocity=True)
     ax.set(ylabel="sector", title=title)
 

@@ -69,7 +69,7 @@ for name, found in waves.items():
 found = waves["a wave runs"]
 figure, (left, right) = plt.subplots(1, 2, figsize=(7.4, 2.6), layout="constrained")
 cd.plot.draw_wave_kymograph(
-    left, velocities["a wave runs"], found["phase"], by_velocity=True
+    left, velocities["a wave runs"], found["wave_phase"], by_velocity=True
 )
 right.bar(found["around"], 100 * found["power"], color="#0072B2")
 right.set(xlabel="waves around the cell", ylabel="variance (%)")
