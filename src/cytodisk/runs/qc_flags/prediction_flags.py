@@ -52,10 +52,10 @@ def jitter(study: Study) -> Iterator[QCFlag]:
         yield QCFlag(
             "jitter",
             f"masks that jitter show in {counted(len(places), 'prediction')} with velocity",
-            "Noise of the outline moves edge and windows at once, and back in the next frame: so each "
-            "predicts the other by itself, mostly one frame ahead.",
-            "Look at the coefficients by lag: what stands at lag 1 alone may be jitter. Smooth the masks in "
-            "time, or take every second frame, and see whether the link is still there.",
+            "Noise of the outline moves edge and windows at once, and back in the next frame: so velocity "
+            "and signal predict each other by themselves, velocity the signal most.",
+            "Correct the masks, or segment again with less noise, and see whether the link stays. Layers "
+            "further in suffer less.",
             tuple(places),
         )
 
