@@ -5,7 +5,7 @@ from cytodisk.parameters import Parameters, parameter
 from cytodisk.windows.grid_parameters import EdgeGridParameters
 
 EVENNESS = 4.0
-LINE_TENSION = 0.25
+LINE_TENSION = 0.5
 
 
 class EvennessParameters(Parameters):

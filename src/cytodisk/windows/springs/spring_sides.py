@@ -42,7 +42,7 @@ class Sides:
     @property
     def windows(self) -> IntArray:
         """Windows that are left, in their order: each is after the last of sides that are joined."""
-        return self.numbers[np.append(~self.joined[1:], True)]
+        return np.asarray(self.numbers[np.append(~self.joined[1:], True)])
 
 
 @dataclass(frozen=True, eq=False)
