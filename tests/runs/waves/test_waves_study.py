@@ -138,6 +138,8 @@ def test_wrong_names_are_refused_with_what_there_is(tmp_path: Path) -> None:
         run_waves(study, "RhoA")
     with pytest.raises(ParameterError, match="layer 5 is not in the study: it has 0:1"):
         run_waves(study, "Rac1", layer=5)
+    with pytest.raises(ParameterError, match="layer 1 is given, but velocity is that of the edge alone"):
+        run_waves(study, layer=1)
     with pytest.raises(ParameterError, match="has no cell 4"):
         run_waves(study, cells=[4])
     study.provenance["run"] = "map"

@@ -17,7 +17,7 @@ WAVE_COLUMNS: Columns = (
         "kind",
         pa.string(),
         "",
-        "rotating, standing, oscillating (the whole edge at once), or none (p is 0.05 or more)",
+        "rotating, standing, oscillating (the whole edge at once), or none (p is above 0.05)",
     ),
     Column("way", pa.string(), "", "clockwise or anticlockwise as seen in the image; empty if neither"),
     _MODE,
@@ -62,8 +62,8 @@ WAVE_COLUMNS: Columns = (
         "order_partial",
         pa.float64(),
         "1",
-        "order score of what the motion of the cell alone does not give; empty where it was not asked, or p "
-        "is 0.05 or more",
+        "order score of what the motion of the cell alone does not give; empty without a wave, where it was "
+        "not asked, or for velocity with one wave around, which is a motion of the whole cell",
     ),
     Column("p_partial", pa.float64(), "1", "p of order_partial"),
 )

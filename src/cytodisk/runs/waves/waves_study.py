@@ -65,8 +65,8 @@ def waves_study(
         or waves could be looked for in no cell.
     """
     chosen = _cells(study, cells)
-    _check_signal(study, signal)
     options = WavesParameters.chosen(parameters, settings)
+    _check_signal(study, signal, options)
     looking = CellWaves(study, signal, options)
     found: dict[str, list[pd.DataFrame]] = {}
     rows = []
@@ -106,8 +106,13 @@ def _cells(study: Study, cells: list[int] | None) -> list[int]:
     return sorted({int(cell) for cell in cells}) if cells else there
 
 
-def _check_signal(study: Study, signal: str) -> None:
+def _check_signal(study: Study, signal: str, options: WavesParameters) -> None:
     if signal in VELOCITIES:
+        if options.layer:
+            raise ParameterError(
+                f"layer {options.layer} is given, but {signal} is that of the edge alone: pass a channel as "
+                "signal, or leave layer out"
+            )
         return
     activity = study.activity(int(study.cells["cell"].iloc[0]))
     names = [str(name) for name in activity["channel"].to_numpy()] if "mean" in activity else []
