@@ -86,15 +86,18 @@ def main() -> int:
     folder = Path(os.environ.get("CYTODISK_DATA", "")) / "dictyostelium_patterns"
     if not (folder / "cells.csv").exists():
         raise SystemExit("set CYTODISK_DATA to the folder that holds dictyostelium_patterns")
+    head = "\n| what | rotating or oscillating against | cells | AUC | 95 % interval |\n|---|---|---|---|---|"
     cut = scored(folder, chosen.seconds, chosen.surrogates)
-    whole = scored(folder, None, chosen.surrogates)
     print(cut.round(3).to_string(index=False))
-    print("\n| what | rotating or oscillating against | cells | AUC | 95 % interval |\n|---|---|---|---|---|")
-    print("\n".join(lines(cut, "order", f"order, cut to {chosen.seconds:g} s", chosen.draws)))
-    print("\n".join(lines(whole, "order", "order, uncut", chosen.draws)))
-    print("\n".join(lines(whole, "seconds", "seconds of the uncut movie alone", chosen.draws)))
     kinds = cut.groupby("pattern")["kind"].value_counts().unstack(fill_value=0)
     print(f"\nKinds that edge_waves finds, cut:\n{kinds.to_string()}")
+    print(
+        "\n".join([head, *lines(cut, "order", f"order, cut to {chosen.seconds:g} s", chosen.draws)]),
+        flush=True,
+    )
+    whole = scored(folder, None, chosen.surrogates)
+    print("\n".join(lines(whole, "order", "order, uncut", chosen.draws)))
+    print("\n".join(lines(whole, "seconds", "seconds of the uncut movie alone", chosen.draws)))
     return 0
 
 
