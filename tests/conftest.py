@@ -1,5 +1,8 @@
+import compileall
+import gc
 import os
 import sys
+from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -10,7 +13,11 @@ from hypothesis import HealthCheck, settings
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_to_disk
+from cytodisk.runs.told.compiling_words import compiles
+from cytodisk.runs.warm_up import warm_up
+from cytodisk.simulate import random_pair
 from cytodisk.windows.polar_windows import CellWindows, polar_windows
+from deadlines import wait_until
 
 
 def _has_screen() -> bool:
@@ -28,6 +35,47 @@ _COMMON = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 settings.register_profile("here", max_examples=30, **_COMMON)
 settings.register_profile("ci", max_examples=30, derandomize=True, **_COMMON)
 settings.load_profile("ci" if os.environ.get("CI") else "here")
+
+_MANY = 1000  # tests of a session that needs nearly all kernels
+gc.disable()  # while tests are collected nothing becomes garbage, and looking for it takes a third of the time
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Compile the package to bytecode once, not in each process that tests start."""
+    if getattr(config.option, "numprocesses", None):
+        gc.enable()  # here nothing is collected but by the workers
+    if not hasattr(config, "workerinput"):
+        compileall.compile_dir(Path(__file__).parents[1] / "src" / "cytodisk", quiet=2)
+
+
+def pytest_collection_finish() -> None:
+    """Leave what was imported and collected alone from now on: it stays to the end."""
+    gc.freeze()
+    gc.enable()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _kernels(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Compile missing kernels once: two workers share them, where each would compile nearly all."""
+    worker = os.environ.get("PYTEST_XDIST_WORKER", "")
+    if (
+        worker not in ("gw0", "gw1")
+        or os.environ.get("PYTEST_XDIST_WORKER_COUNT") == "1"
+        or len(request.session.items) < _MANY
+        or not compiles("movie with nuclei")
+    ):
+        return
+    gc.disable()
+    if worker == "gw0":
+        mask, nucleus = random_pair(3)
+        map_to_disk(mask), map_to_disk(mask, nucleus=nucleus)
+    else:
+        warm_up(True, True)
+    gc.enable()
+    folder = tmp_path_factory.getbasetemp().parent  # of all workers
+    (folder / f"kernels_{worker}").touch()
+    with suppress(pytest.fail.Exception):  # then this worker compiles them
+        wait_until(lambda: len(list(folder.glob("kernels_gw[01]"))) == 2, "the other worker had its kernels")
 
 
 @pytest.fixture(scope="session")
