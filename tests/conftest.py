@@ -37,7 +37,7 @@ settings.register_profile("ci", max_examples=30, derandomize=True, **_COMMON)
 settings.load_profile("ci" if os.environ.get("CI") else "here")
 
 _MANY = 1000  # tests of a session that needs nearly all kernels
-gc.disable()  # while tests are collected nothing becomes garbage, and looking for it takes a third of the time
+gc.disable()  # while tests are collected, of which a third went into looking for garbage that is not there
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -1,5 +1,6 @@
 """A batch's `--resume` believes no damaged study, and its `--overwrite` removes what was recorded alone."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -31,14 +32,26 @@ def batch(tmp_path_factory: pytest.TempPathFactory) -> Batch:
     return read_batch(folder / "batch.toml")
 
 
+@pytest.fixture(scope="module")
+def done(batch: Batch, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Results of the batch."""
+    out = tmp_path_factory.mktemp("done") / "out"
+    batch_study(batch, out)
+    return out
+
+
+@pytest.fixture
+def out(done: Path, tmp_path: Path) -> Path:
+    """A copy of them, to be harmed."""
+    return Path(shutil.copytree(done, tmp_path / "out"))
+
+
 def contents(out: Path) -> dict[str, bytes]:
     return {str(path.relative_to(out)): path.read_bytes() for path in out.rglob("*") if path.is_file()}
 
 
 @pytest.mark.slow
-def test_a_study_that_is_not_whole_is_done_anew(batch: Batch, tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    batch_study(batch, out)
+def test_a_study_that_is_not_whole_is_done_anew(batch: Batch, out: Path) -> None:
     for name in ("inputs/one/maps/cell_00000.npz", "inputs/two/windows.parquet", "rows/two.json"):
         before = (out / name).read_bytes()
         (out / name).write_bytes(before[:-9])
@@ -52,9 +65,7 @@ def test_a_study_that_is_not_whole_is_done_anew(batch: Batch, tmp_path: Path) ->
 
 
 @pytest.mark.slow
-def test_overwrite_leaves_what_is_not_the_batchs(batch: Batch, tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    batch_study(batch, out)
+def test_overwrite_leaves_what_is_not_the_batchs(batch: Batch, out: Path) -> None:
     for name in THEIRS:
         (out / name).parent.mkdir(exist_ok=True)
         (out / name).write_text("mine")
@@ -63,9 +74,7 @@ def test_overwrite_leaves_what_is_not_the_batchs(batch: Batch, tmp_path: Path) -
 
 
 @pytest.mark.slow
-def test_overwrite_is_refused_where_an_input_would_go(batch: Batch, tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    batch_study(batch, out)
+def test_overwrite_is_refused_where_an_input_would_go(batch: Batch, out: Path, tmp_path: Path) -> None:
     tifffile.imwrite(out / "inputs" / "one" / "maps" / "mask.tif", cd.simulate.disk(9).astype(np.uint8))
     (tmp_path / "batch.toml").write_text(TEXT.format("out/inputs/one/maps/"))
     inside = read_batch(tmp_path / "batch.toml")

@@ -22,6 +22,7 @@ from cytodisk.store.correlation_store import correlation_path, list_correlations
 
 SMALL = MovieParameters(layers=4, sectors=12)
 FEW = {"surrogates": 49}
+PLAIN: dict = {"surrogates": 0, "geometry": False}  # where it matters that there is a correlation alone
 
 
 @pytest.fixture(scope="module")
@@ -89,12 +90,14 @@ def test_clusters_are_those_of_the_function_with_their_places_in_words(study: cd
 
 
 def test_clusters_can_be_left_out_or_be_none(study: cd.Study) -> None:
-    for options in ({"clusters": False, "surrogates": 19}, {"surrogates": 0}):
+    for options in ({"clusters": False, "surrogates": 19, "geometry": False}, PLAIN):
         found = correlate_study(study, "edge", max_lag=3, name="plain", **options)
         assert found.clusters is None
         assert "cluster" not in found.windows
         assert found.cells["cluster_surrogates"].tolist() == [0]
-    none = correlate_study(study, "material", max_lag=3, name="none", surrogates=19, sectors=(2, 3)).clusters
+    none = correlate_study(
+        study, "material", max_lag=3, name="none", surrogates=19, sectors=(2, 3), geometry=False
+    ).clusters
     assert none is not None
     assert list(none.columns)[:2] == ["cell", "cluster"]
 
@@ -146,7 +149,7 @@ def test_it_can_be_read_again_and_is_replaced(study: cd.Study) -> None:
     again = cd.open_study(study.path).correlation("edge", "velocity")
     pd.testing.assert_frame_equal(again.windows, first.windows)
     assert ("edge", "velocity") in study.correlations
-    assert correlate_study(study, "edge", max_lag=5, **FEW).settings["max_lag"] == 5
+    assert correlate_study(study, "edge", max_lag=5, **PLAIN).settings["max_lag"] == 5
     assert study.correlation("edge").settings["max_lag"] == 5
     assert not list(first.path.parent.glob(".*"))
 
@@ -171,7 +174,7 @@ def test_two_signals_and_their_pairs(study: cd.Study) -> None:
 
 
 def test_a_signal_against_the_edge_of_its_sector(study: cd.Study) -> None:
-    found = correlate_study(study, "edge", "edge", against="edge", max_lag=3, surrogates=0)
+    found = correlate_study(study, "edge", "edge", against="edge", max_lag=3, **PLAIN)
     outer = found.windows[found.windows["layer"] == 0]
     np.testing.assert_allclose(outer["correlation"], 1.0)
     assert (outer["lag"] == 0).all()
@@ -214,7 +217,7 @@ def test_what_cannot_be_correlated_is_refused(study: cd.Study, call: dict, messa
 
 
 def test_a_correlation_that_is_not_there_lists_those_that_are(study: cd.Study) -> None:
-    correlate_study(study, "edge", max_lag=3, surrogates=0)
+    correlate_study(study, "edge", max_lag=3, **PLAIN)
     with pytest.raises(ReadError, match=r"edge with nothing.*edge with vel"):
         study.correlation("edge", "nothing")
 
@@ -255,14 +258,14 @@ def test_names_that_no_file_can_have(tmp_path: Path) -> None:
 
 
 def test_a_damaged_correlation_says_so(study: cd.Study) -> None:
-    found = correlate_study(study, "edge", max_lag=3, surrogates=0)
+    found = correlate_study(study, "edge", max_lag=3, **PLAIN)
     (found.path / "windows.parquet").unlink()
     with pytest.raises(ReadError, match="run cytodisk correlate again"):
         _ = study.correlation("edge").windows
     (found.path / "settings.json").write_text("{", encoding="utf-8")
     with pytest.raises(ReadError, match="settings\\.json is not the settings of a correlation"):
         study.correlation("edge")
-    assert json.loads((correlate_study(study, "edge", surrogates=0).path / "settings.json").read_text())
+    assert json.loads((correlate_study(study, "edge", **PLAIN).path / "settings.json").read_text())
 
 
 def _twice(signal: object) -> object:
@@ -312,8 +315,8 @@ def test_parts_that_are_not_there(study: cd.Study, settings: dict, message: str)
 
 
 def test_variants_stand_beside_each_other(study: cd.Study) -> None:
-    correlate_study(study, "edge", max_lag=3, surrogates=0)
-    correlate_study(study, "edge", max_lag=4, surrogates=0, detrend="linear", name="linear")
+    correlate_study(study, "edge", max_lag=3, **PLAIN)
+    correlate_study(study, "edge", max_lag=4, **PLAIN, detrend="linear", name="linear")
     assert ("edge", "velocity", "linear") in study.correlations
     assert ("edge", "velocity") in study.correlations
     assert study.correlation("edge").settings["max_lag"] == 3
@@ -321,7 +324,7 @@ def test_variants_stand_beside_each_other(study: cd.Study) -> None:
 
 
 def test_a_crash_while_replacing_loses_nothing(study: cd.Study, monkeypatch: pytest.MonkeyPatch) -> None:
-    before = correlate_study(study, "edge", max_lag=3, surrogates=0).windows
+    before = correlate_study(study, "edge", max_lag=3, **PLAIN).windows
 
     def no_room(*_: object) -> None:
         raise OSError(28, "No space left on device")
@@ -329,25 +332,25 @@ def test_a_crash_while_replacing_loses_nothing(study: cd.Study, monkeypatch: pyt
     with monkeypatch.context() as patch:
         patch.setattr("cytodisk.store.derived.derived_folder.write_table", no_room)
         with pytest.raises(StudyError, match="No space left on device"):
-            correlate_study(study, "edge", max_lag=4, surrogates=0)
+            correlate_study(study, "edge", max_lag=4, **PLAIN)
     pd.testing.assert_frame_equal(study.correlation("edge").windows, before)
     assert not list((study.path / "correlation").glob(".*"))
 
 
 def test_a_cut_off_table_says_so(study: cd.Study) -> None:
-    found = correlate_study(study, "edge", max_lag=3, surrogates=0)
+    found = correlate_study(study, "edge", max_lag=3, **PLAIN)
     table = found.path / "layers.parquet"
     table.write_bytes(table.read_bytes()[:100])
     with pytest.raises(ReadError, match="run cytodisk correlate again"):
         _ = study.correlation("edge").layers
-    correlate_study(study, "edge", max_lag=3, surrogates=0)
+    correlate_study(study, "edge", max_lag=3, **PLAIN)
 
 
 def test_jitter_is_looked_for_whatever_the_lags(study: cd.Study) -> None:
-    assert correlate_study(study, "edge", max_lag=2, surrogates=0).cells["jitter"].notna().all()
-    short = correlate_study(study, "edge", max_lag=2, surrogates=0, frames=(0, 13), name="short")
+    assert correlate_study(study, "edge", max_lag=2, **PLAIN).cells["jitter"].notna().all()
+    short = correlate_study(study, "edge", max_lag=2, **PLAIN, frames=(0, 13), name="short")
     assert short.cells["jitter"].isna().all()  # fewer than six lags
-    assert correlate_study(study, "edge", surrogates=0, skip_lags=(-1, 0)).cells["jitter"].item() == 0.0
+    assert correlate_study(study, "edge", **PLAIN, skip_lags=(-1, 0)).cells["jitter"].item() == 0.0
 
 
 def test_numbers_of_numpy_are_numbers(study: cd.Study) -> None:
@@ -367,7 +370,7 @@ def test_numbers_of_numpy_are_numbers(study: cd.Study) -> None:
 
 def test_a_folder_that_cannot_be_exchanged_stays(study: cd.Study, monkeypatch: pytest.MonkeyPatch) -> None:
     """Neither a failure between the two renames nor a kill there loses the old result."""
-    found = correlate_study(study, "edge", max_lag=3, surrogates=0)
+    found = correlate_study(study, "edge", max_lag=3, **PLAIN)
     before, rename = found.windows, Path.replace
 
     def fail(self: Path, target: Path) -> Path:
@@ -378,19 +381,19 @@ def test_a_folder_that_cannot_be_exchanged_stays(study: cd.Study, monkeypatch: p
     with monkeypatch.context() as patch:
         patch.setattr(Path, "replace", fail)
         with pytest.raises(StudyError, match="No space left on device"):
-            correlate_study(study, "edge", max_lag=4, surrogates=0)
+            correlate_study(study, "edge", max_lag=4, **PLAIN)
     pd.testing.assert_frame_equal(study.correlation("edge").windows, before)
     found.path.replace(found.path.with_name(f".old~{found.path.name}"))  # as a kill leaves it
     with monkeypatch.context() as patch:
         patch.setattr(Path, "replace", fail)
         with pytest.raises(StudyError, match="No space left on device"):
-            correlate_study(study, "edge", max_lag=4, surrogates=0)
+            correlate_study(study, "edge", max_lag=4, **PLAIN)
     pd.testing.assert_frame_equal(study.correlation("edge").windows, before)
 
 
 def test_events_of_some_sectors_are_those_of_the_whole_edge(study: cd.Study) -> None:
-    whole = correlate_study(study, "edge", max_lag=3, surrogates=0).events
-    part = correlate_study(study, "edge", max_lag=3, surrogates=0, sectors=(10, 2), name="part").events
+    whole = correlate_study(study, "edge", max_lag=3, **PLAIN).events
+    part = correlate_study(study, "edge", max_lag=3, **PLAIN, sectors=(10, 2), name="part").events
     assert whole is not None
     assert part is not None
     expected = whole[whole["sector"].isin([10, 11, 0, 1, 2])].reset_index(drop=True)

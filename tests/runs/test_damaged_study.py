@@ -1,5 +1,6 @@
 """A part counts as done only if its row, its tables and its map are as they were written."""
 
+import shutil
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -24,6 +25,21 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> MovieInputs:
 @pytest.fixture(scope="module")
 def whole(inputs: MovieInputs, tmp_path_factory: pytest.TempPathFactory) -> cd.Study:
     return movie_study(inputs, tmp_path_factory.mktemp("study") / "whole")
+
+
+@pytest.fixture
+def out(whole: cd.Study, tmp_path: Path) -> Path:
+    """A copy of the whole study, to be harmed."""
+    return Path(shutil.copytree(whole.path, tmp_path / "out"))
+
+
+@pytest.fixture(scope="module")
+def stopped(inputs: MovieInputs, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A study that was stopped after five of six frames."""
+    folder = tmp_path_factory.mktemp("stopped") / "out"
+    with pytest.raises(Stopped):
+        movie_study(inputs, folder, progress=stop_after(5))
+    return folder
 
 
 def cut(file: Path) -> None:
@@ -51,13 +67,13 @@ HARMS = {
 def test_a_damaged_frame_of_a_stopped_movie_and_what_follows_it_are_done_anew(
     inputs: MovieInputs,
     whole: cd.Study,
+    stopped: Path,
     tmp_path: Path,
     name: str,
     harm: Callable[[Path], object],
     done: int,
 ) -> None:
-    with pytest.raises(Stopped):
-        movie_study(inputs, tmp_path / "out", progress=stop_after(5))
+    shutil.copytree(stopped, tmp_path / "out")
     harm(tmp_path / "out" / name)
     calls: list[tuple[int, int]] = []
     with pytest.warns(DamagedPartWarning, match=rf"damaged parts are made anew: 00000_t0000{done}"):
@@ -73,12 +89,11 @@ def test_a_damaged_frame_of_a_stopped_movie_and_what_follows_it_are_done_anew(
 )
 @pytest.mark.parametrize("harm", [Path.unlink, cut, change])
 def test_a_complete_study_that_is_not_whole_is_not_called_done(
-    inputs: MovieInputs, whole: cd.Study, tmp_path: Path, name: str, harm: Callable[[Path], object]
+    inputs: MovieInputs, whole: cd.Study, out: Path, name: str, harm: Callable[[Path], object]
 ) -> None:
-    movie_study(inputs, tmp_path / "out")
-    harm(tmp_path / "out" / name)
+    harm(out / name)
     with pytest.warns(DamagedPartWarning, match=f"{name} gone or damaged: it is made anew"):
-        assert_same_movie(whole, movie_study(inputs, tmp_path / "out", resume=True))
+        assert_same_movie(whole, movie_study(inputs, out, resume=True))
 
 
 def test_a_part_of_something_else_is_named(inputs: MovieInputs, tmp_path: Path) -> None:
@@ -117,14 +132,12 @@ def without_a_chunk(folder: Path) -> None:
     ],
 )
 def test_what_the_run_did_not_write_is_not_read(
-    inputs: MovieInputs,
-    tmp_path: Path,
+    out: Path,
     harm: Callable[[Path], None],
     read: Callable[[cd.Study], object],
     named: str,
 ) -> None:
-    study = movie_study(inputs, tmp_path / "out")
-    read(study)
-    harm(tmp_path / "out")
+    read(cd.open_study(out))
+    harm(out)
     with pytest.raises(ReadError, match=rf"{named} is not the file that the run wrote.*--resume"):
-        read(cd.open_study(tmp_path / "out"))
+        read(cd.open_study(out))
