@@ -1,7 +1,6 @@
 """What README and docs show: their Python runs, their pages are there, and README stays short."""
 
 import re
-import subprocess
 import sys
 import textwrap
 from pathlib import Path
@@ -12,6 +11,7 @@ import pytest
 import tifffile
 
 import cytodisk as cd
+from cytodisk.cli import app
 from cytodisk.runs.demo_input import write_demo_input
 
 REPOSITORY = Path(__file__).parents[2]
@@ -57,8 +57,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "--figures 0",
         "compare-windows mask.tif -o compared --methods newton,edge",
     ):
-        arguments = [sys.executable, "-m", "cytodisk", *command.split(), "--quiet"]
-        subprocess.run(arguments, cwd=here, check=True, timeout=300)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.chdir(here)
+            assert not app([*command.split(), "--quiet"], standalone_mode=False)
     return here
 
 

@@ -1,11 +1,11 @@
 """Help: no flag is cut in a narrow window, and its start is quick."""
 
-import os
 import re
 import subprocess
 import sys
 
 import pytest
+from command_line import Run
 
 from cytodisk.cli import app
 from cytodisk.cli.help_groups import flag_name
@@ -15,14 +15,10 @@ COMMANDS = sorted(app.commands)
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_flags_are_whole_at_80_columns(command: str) -> None:
-    told = subprocess.run(
-        [sys.executable, "-m", "cytodisk", command, "--help"],
-        env=os.environ | {"COLUMNS": "80"},
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout
+def test_flags_are_whole_at_80_columns(command: str, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    code, told, _ = run(command, "--help")
+    assert code == 0
     flags = [flag for option in app.commands[command].loaded.params for flag in option.opts if "--" in flag]
     assert set(flags) <= set(re.findall(r"--[a-z0-9-]+(?=[ ,\n])", told))
     assert max(map(len, told.splitlines())) <= 80

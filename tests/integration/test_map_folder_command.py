@@ -15,7 +15,7 @@ import cytodisk as cd
 from cytodisk.cli.console import console_for
 from cytodisk.cli.map_end import finish_map
 from cytodisk.runs.told.map_words import percent
-from deadlines import kill_after_parts, run_to_the_end
+from deadlines import kill_after_parts
 
 GRID = ("--layers", "3", "--sectors", "8", "--edge-length", "2", "--figures", "0")
 
@@ -106,19 +106,19 @@ def test_maps_that_are_not_one_to_one_are_not_called_so(
 
 @pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")
-def test_a_killed_run_over_a_folder_goes_on_to_the_same_tables(tmp_path: Path) -> None:
+def test_a_killed_run_over_a_folder_goes_on_to_the_same_tables(run: Run, tmp_path: Path) -> None:
     (tmp_path / "in").mkdir()
     for number in range(4):
         tifffile.imwrite(tmp_path / "in" / f"{number}_masks.tif", cd.simulate.label_image(10, number))
 
     def command(out: Path, workers: int, *more: str) -> list[str]:
-        flags = ["--figures", "0", "-q", "--workers", str(workers), *more]
-        return [sys.executable, "-m", "cytodisk", "map", str(tmp_path / "in"), "-o", str(out), *flags]
+        return ["map", str(tmp_path / "in"), "-o", str(out), *GRID, "-q", "--workers", str(workers), *more]
 
     out = tmp_path / "out"
-    assert 2 <= kill_after_parts(command(out, 2), out, 2) < 8  # of 8 and 2 cells an image
-    run_to_the_end(command(out, 2, "--resume"))
-    run_to_the_end(command(tmp_path / "whole", 1))
+    killed = kill_after_parts([sys.executable, "-m", "cytodisk", *command(out, 2)], out, 2)
+    assert 2 <= killed < 8  # of 8 and 2 cells an image
+    assert run(*command(out, 2, "--resume"))[0] == 0
+    assert run(*command(tmp_path / "whole", 1))[0] == 0
     resumed, whole = cd.open_study(out), cd.open_study(tmp_path / "whole")
     assert len(whole.cells) == 40
     pd.testing.assert_frame_equal(

@@ -1,6 +1,7 @@
 """`cytodisk population`, from masks and a table of groups to words and tables."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -15,7 +16,6 @@ from command_line import Run, assert_refused
 import cytodisk as cd
 from cytodisk.cli.population.power_words import plan_lines, power_lines
 from cytodisk.runs.population.power.population_power import plan_of
-from deadlines import run_to_the_end
 
 
 @pytest.fixture(scope="module")
@@ -153,19 +153,19 @@ def test_a_plan_says_what_was_assumed_and_what_given() -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")
-def test_a_killed_command_is_done_by_the_next(cells: Path, tmp_path: Path) -> None:
+def test_a_killed_command_is_done_by_the_next(run: Run, cells: Path, tmp_path: Path) -> None:
     out = tmp_path / "atlas"
     files = [str(cells / "maps"), "--groups", str(cells / "groups.csv"), "-o", str(out), "-q", "--no-figures"]
     command = [sys.executable, "-m", "cytodisk", "population", *files]
-    run_to_the_end([*command])
+    assert run("population", *files)[0] == 0
     whole = {file.name: file.read_bytes() for file in out.glob("*.parquet")}
     for file in ("provenance.json", "windows.parquet"):  # the first that is written, and one of the tables
-        run_to_the_end(["rm", "-r", str(out)])
+        shutil.rmtree(out)
         process = subprocess.Popen(command, start_new_session=True)
         while not (out / file).exists() and process.poll() is None:
             time.sleep(0.001)
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
-        run_to_the_end([*command, "--resume"])
+        assert run("population", *files, "--resume")[0] == 0
         assert {file.name: file.read_bytes() for file in out.glob("*.parquet")} == whole

@@ -70,6 +70,18 @@ def test_it_ends_in_one_line_and_leaves_no_lock(
     assert [name for name in names if name.startswith(".cytodisk") or ".tmp" in name] == []
 
 
+@pytest.fixture(scope="module")
+def study(files: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Of the first frames: enough to be read while it is seen that one of them is."""
+    folder = tmp_path_factory.mktemp("read")
+    masks = tifffile.imread(files / "masks.tif")[:90]
+    counts = np.random.default_rng(0).poisson(90, masks.shape).astype(np.uint16)
+    for name, frames in (("masks.tif", masks), ("signal.tif", counts)):
+        tifffile.imwrite(folder / name, frames, metadata={"axes": "TYX"}, photometric="minisblack")
+    given = {"signal": folder / "signal.tif", "layers": 3, "sectors": 12}
+    return cd.run_movie(folder / "masks.tif", folder / "study", **given).path
+
+
 # The command line in a process that says when it opens a file of the study with a given ending.
 _TOLD = """
 import sys
@@ -93,15 +105,8 @@ main()
     ],
 )
 def test_what_reads_a_study_leaves_it_as_it_was(
-    files: Path, tmp_path: Path, command: tuple[str, ...], ending: str
+    study: Path, tmp_path: Path, command: tuple[str, ...], ending: str
 ) -> None:
-    signal_file = files / "signal.tif"
-    counts = np.random.default_rng(0).poisson(90, tifffile.imread(files / "masks.tif").shape)
-    tifffile.imwrite(
-        signal_file, counts.astype(np.uint16), metadata={"axes": "TYX"}, photometric="minisblack"
-    )
-    study = tmp_path / "study"
-    cd.run_movie(files / "masks.tif", study, signal=signal_file, layers=3, sectors=12)
     before, said = content(study), tmp_path / "said"
     given = [sys.executable, "-c", _TOLD, str(said), ending, command[0], str(study), *command[1:]]
     started = subprocess.Popen(given, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
