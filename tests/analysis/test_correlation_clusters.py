@@ -27,7 +27,7 @@ def coupled(seed: int, sectors: Any, layers: int = 2, frames: int = 120) -> tupl
 
 
 def clusters_of(a: Any, b: Any, **settings: Any) -> xr.Dataset:
-    found = cd.cross_correlate(a, b, 8, clusters=True, **{"surrogates": 99} | settings)
+    found = cd.cross_correlate(a, b, 8, clusters=True, **{"surrogates": 59} | settings)
     return cd.correlation_clusters(found)
 
 
@@ -162,7 +162,7 @@ def test_clusters_of_series_by_sector_alone_and_of_channels_one_by_one() -> None
     assert line["member"].dims == ("cluster", "sector")
     assert int(line["lag"][0]) == -LAG
     channels = xr.concat([a, a[::-1].assign_coords(a.coords)], "channel").transpose("time", "channel", ...)
-    correlations = cd.cross_correlate(channels, b, 8, surrogates=99, clusters=True)
+    correlations = cd.cross_correlate(channels, b, 8, surrogates=59, clusters=True)
     with pytest.raises(cd.errors.ParameterError, match=r"channel.*isel"):
         cd.correlation_clusters(correlations)
     both = [cd.correlation_clusters(correlations.isel(channel=k)) for k in (0, 1)]
@@ -173,13 +173,13 @@ def test_clusters_of_series_by_sector_alone_and_of_channels_one_by_one() -> None
 def test_a_region_is_significant_in_other_correlations_where_they_agree() -> None:
     a, b = coupled(1050, np.arange(8, 28))
     with_coupling, without = (
-        cd.cross_correlate(series, b, 8, surrogates=99, clusters=True)
+        cd.cross_correlate(series, b, 8, surrogates=59, clusters=True)
         for series in (a, cd.simulate.independent_series("white", 1051, 120, 4, 40)[0])
     )
     clusters = cd.correlation_clusters(with_coupling)
     assert_allclose(p_of_regions(clusters, with_coupling), clusters["p"])
     assert p_of_regions(clusters, without)[0] > 0.05
-    turned = cd.cross_correlate(-a, b, 8, surrogates=99, clusters=True)
+    turned = cd.cross_correlate(-a, b, 8, surrogates=59, clusters=True)
     assert p_of_regions(clusters, turned)[0] > 0.05
 
 

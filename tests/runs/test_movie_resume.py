@@ -1,3 +1,4 @@
+import shutil
 from pathlib import Path
 
 import pytest
@@ -65,6 +66,15 @@ def test_a_map_without_its_row_is_made_anew(inputs: MovieInputs, whole: cd.Study
     assert_same_movie(whole, movie_study(inputs, tmp_path / "out", resume=True))
 
 
+@pytest.fixture(scope="module")
+def frames_done(inputs: MovieInputs, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run that was stopped when all frames were done, before its tables."""
+    out = tmp_path_factory.mktemp("frames_done") / "out"
+    with pytest.raises(Stopped):
+        movie_study(inputs, out, progress=stop_after(FRAMES))
+    return out
+
+
 def _stop(*_: object, **__: object) -> None:
     raise Stopped
 
@@ -81,12 +91,18 @@ def _stop(*_: object, **__: object) -> None:
     ],
 )
 def test_a_run_stopped_while_it_writes_its_tables_goes_on(
-    inputs: MovieInputs, whole: cd.Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, where: str
+    inputs: MovieInputs,
+    whole: cd.Study,
+    frames_done: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    where: str,
 ) -> None:
+    shutil.copytree(frames_done, tmp_path / "out")
     with monkeypatch.context() as patch:
         patch.setattr(where, _stop)
         with pytest.raises(Stopped):
-            movie_study(inputs, tmp_path / "out")
+            movie_study(inputs, tmp_path / "out", resume=True)
     with pytest.raises(ReadError, match="is not complete"):
         cd.open_study(tmp_path / "out")
     calls: list[tuple[int, int]] = []

@@ -66,8 +66,9 @@ def test_every_frame_reads_back_as_it_was_written(tmp_path: Path, frames: int) -
     assert_array_equal(found["time_s"], 5.0 * np.array(times))
     assert found["channel"].to_numpy().tolist() == ["Rac1", "RhoA"]
     assert (found["layer"].size, found["sector"].size) == (2, 3)
+    written = [frame_arrays(time) for time in times]
     for name in STATISTICS + GEOMETRY + MOTION:
-        assert_array_equal(found[name], np.stack([frame_arrays(time)[name] for time in times]), err_msg=name)
+        assert_array_equal(found[name], np.stack([frame[name] for frame in written]), err_msg=name)
     assert set(found["status"].to_numpy()) == {"ok"}
 
 
