@@ -488,12 +488,12 @@ def test_independent_series_are_rarely_called_correlated(kind: Any) -> None:
 
 
 def test_what_is_coupled_is_found_and_the_rest_is_not() -> None:
-    windows = np.zeros((2, 40), dtype=bool)
-    windows[0, :15] = True
+    windows = np.zeros((2, 24), dtype=bool)
+    windows[0, :12] = True
     a, b = coupled_series(
-        "ar1", 2, 200, 2, 40, lag_frames=4, windows=windows, strength=0.8, correlation_length=0.0
+        "ar1", 2, 200, 2, 24, lag_frames=4, windows=windows, strength=0.8, correlation_length=0.0
     )
-    peak = peak_correlation(cd.cross_correlate(a, b, 12, surrogates=199))  # a follows b
+    peak = peak_correlation(cd.cross_correlate(a, b, 12, surrogates=99))  # a follows b
     found = peak["q"].to_numpy() < 0.05
     assert found[windows].all()
     assert found[~windows].mean() < 0.05

@@ -32,7 +32,7 @@ def star() -> DiskMap:
 
 
 @pytest.mark.parametrize(
-    "mask", [simulate.disk(40.0), simulate.ellipse((12.0, 30.0))], ids=["disk", "ellipse"]
+    "mask", [simulate.disk(25.0), simulate.ellipse((12.0, 30.0))], ids=["disk", "ellipse"]
 )
 def test_it_lowers_the_area_error_of_its_start(mask: np.ndarray) -> None:
     cell = mesh_cell(mask, MappingParameters(method="advection"))

@@ -169,3 +169,29 @@ def test_pages_of_speed_have_their_files(page: str) -> None:
     named = [word for word in text.split() if word.startswith(f"{page}/")]
     assert len(named) >= 3
     assert [name for name in named if not (folder / name).exists()] == []
+
+
+@pytest.mark.parametrize("apart", [-90, 0, 60, 180])
+def test_poles_apart_are_found_wherever_they_are(load: Any, apart: int) -> None:
+    rng = np.random.default_rng(0)
+    place, pole = np.arange(36) * 10.0, rng.uniform(0, 360, 40).reshape(40, 1)
+    first = np.cos(np.radians(place - pole)) + 0.5 * rng.normal(size=(40, 36))
+    second = 7.0 + np.cos(np.radians(place - pole - apart)) + 0.5 * rng.normal(size=(40, 36))
+    second[3] = np.nan
+    degrees, agreement, p = load("rac1_dgap1").poles_apart(first, second)
+    assert abs((degrees - apart + 180.0) % 360.0 - 180.0) < 10.0
+    assert agreement > 0.9
+    assert p == 0.001
+    assert load("rac1_dgap1").poles_apart(first, rng.normal(size=(40, 36)))[1] < 0.5
+
+
+def test_the_mask_of_the_brightest_cell_is_followed(load: Any) -> None:
+    rng = np.random.default_rng(0)
+    y, x = np.mgrid[:60, :70]
+    cell = [np.hypot(y - 25, x - 22 - step) < 12 for step in range(10)]
+    other = np.hypot(y - 48, x - 60) < 6
+    images = np.array([[80.0 * mask + 30.0 * other, 40.0 * mask + 15.0 * other] for mask in cell])
+    masks, thresholds = load("rac1_dgap1").cell_masks(rng.poisson(images + 2.0).astype(float))
+    assert thresholds.shape == (10,)
+    overlap = [(mask & true).sum() / (mask | true).sum() for mask, true in zip(masks, cell, strict=True)]
+    assert min(overlap) > 0.9

@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt
 import pytest
 
 import cytodisk as cd
+from cytodisk.pages.sheet import Sheet
 
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 SLOW = {  # UMAP is compiled, processes are started
@@ -50,6 +51,7 @@ def test_examples_show_what_comes(
     value: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)  # for what they write
+    monkeypatch.setattr(Sheet.save, "__defaults__", (40,))  # dots an inch, of which no example tells
     found = examples(value)
     assert found or inspect.isclass(value), f"{value.__name__} has no example: write one in its docstring"
     said: list[str] = []
