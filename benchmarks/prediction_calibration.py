@@ -11,6 +11,8 @@ below, by `--first`). Prints a Markdown table for each block:
   found, the share found backwards, and that in which the gain is larger in the true direction.
 * given: a common driver that is given.
 * failures: what fools it, or hides what is there.
+* direction: noise of measurement, and two true directions: what is significant, and what of it is marked as a
+  direction that noise alone may make (`weaker_direction`).
 * ways: other nulls and tests on the same pairs, see `prediction_ways.py`.
 
 With `--results` each pair that is done is kept, and the same command goes on where it was stopped. Ends with
@@ -30,6 +32,8 @@ from pathlib import Path
 import numpy as np
 
 import cytodisk as cd
+from cytodisk.analysis.prediction.direction_support import weaker_direction
+from cytodisk.arrays import FloatArray
 from figure import Figure
 from honest_trials import THREADS
 from prediction_cases import BLOCKS, Make, Signals, pair, unlike
@@ -38,7 +42,8 @@ from stored_trials import StoredTrials
 
 FIRST_SEED = 10_000
 SURROGATES = 99  # p-values of exactly 0.05 and less are then 5 of 100
-PAIRS = {"null": 1000, "one way": 300, "given": 300, "failures": 100, "ways": 100}
+PAIRS = {"null": 1000, "one way": 300, "given": 300, "failures": 100, "direction": 100, "ways": 100}
+NAMES = ("p", "gain", "gain_reversed", "gain_excess", "effect")
 _ALPHA = 0.05
 _AHEAD = 16  # pairs a process takes at once
 _WAY_SURROGATES = 39
@@ -75,7 +80,7 @@ def measure(job: tuple[str, str, int]) -> Trial:
             return Trial(*job, p_values(WAY_CASES[case](seed), seed, _WAY_SURROGATES, "bic"))
         signals = BLOCKS[block][case](seed)
         values = _predicted(signals, seed, "")
-        if block in ("one way", "failures"):
+        if block in ("one way", "failures", "direction"):
             values |= _predicted(signals.back, seed, "_back")
     return Trial(*job, values)
 
@@ -83,7 +88,7 @@ def measure(job: tuple[str, str, int]) -> Trial:
 def _predicted(signals: Signals, seed: int, suffix: str) -> dict[str, float]:
     settings = {"surrogates": SURROGATES, "seed": seed} | signals.settings
     found = cd.predict(signals.source, signals.target, signals.given, **settings)
-    return {f"{name}{suffix}": found[name].item() for name in ("p", "gain", "gain_excess", "effect")}
+    return {f"{name}{suffix}": found[name].item() for name in NAMES}
 
 
 def cases_of(block: str, words: str = "") -> dict[str, Make]:
@@ -108,6 +113,8 @@ def rows(block: str, trials: Sequence[Trial]) -> Iterator[list[str | Figure]]:
             yield [case, count, *(share(way) for way in WAYS)]
         elif block == "null":
             yield [case, count, share("p", 0.03, 0.07)]
+        elif block == "direction":
+            yield [case, count, *_marked(table)]
         elif block == "given":
             yield [case, count, share("p", most=0.07)]
         else:
@@ -124,11 +131,22 @@ def rows(block: str, trials: Sequence[Trial]) -> Iterator[list[str | Figure]]:
             ]
 
 
+def _marked(table: dict[str, FloatArray]) -> Iterator[Figure]:
+    """What is significant in both directions, and what is marked."""
+    for end, other in (("", "_back"), ("_back", "")):
+        found = table[f"p{end}"] <= _ALPHA
+        gains = (f"gain{end}", f"gain{other}", f"gain_reversed{end}", f"gain_reversed{other}")
+        marked = weaker_direction(*(table[name] for name in gains))
+        yield Figure("found", float(found.mean()))
+        yield Figure("marked", float((found & marked).mean()))
+
+
 HEADS = {
     "null": ["pairs", "p ≤ 0.05 (0.03–0.07)"],
     "one way": ["pairs", "found (≥ 0.9)", "backwards (≤ 0.07)", "gain larger forwards (≥ 0.95)", "gain"],
     "given": ["pairs", "p ≤ 0.05 (≤ 0.07)"],
     "failures": ["pairs", "p ≤ 0.05", "backwards", "gain larger forwards", "gain"],
+    "direction": ["pairs", "forwards", "and marked", "backwards", "and marked"],
     "ways": ["pairs", *WAYS],
 }
 

@@ -173,10 +173,46 @@ def _failures() -> dict[str, Make]:
     return found
 
 
+def unequal(strong: float, weak: float) -> Make:
+    """What makes two signals that predict each other, the source the target better than the other way."""
+
+    def make(seed: int) -> Signals:
+        random = np.random.default_rng([seed, 78])
+        source, target = random.normal(size=(2, FRAMES + 50, SECTORS))
+        for frame in range(1, FRAMES + 50):
+            before = source[frame - 1].copy(), target[frame - 1].copy()
+            source[frame] += 0.5 * before[0] + weak * before[1]
+            target[frame] += 0.5 * before[1] + strong * before[0]
+        return Signals(source[50:], target[50:])
+
+    return make
+
+
+def _direction() -> dict[str, Make]:
+    """One way, measured with noise, and both ways."""
+    found = {
+        f"one way, {kind}, r = {strength:g}, noise of the source {noise:g}": pair(
+            kind, strength=strength, source_noise=noise
+        )
+        for kind in ("ar1", "slow")
+        for strength in (0.3, 0.7)
+        for noise in (0.5, 1.0, 2.0)
+    }
+    both: dict[str, Any] = {"coupling": "both ways"}
+    for kind in ("ar1", "slow"):
+        found[f"both ways, {kind}, r = 0.3"] = pair(kind, **both)
+        found[f"both ways, {kind}, r = 0.3, noise of the source 1"] = pair(kind, source_noise=1.0, **both)
+    found["both ways, 0.3 there and 0.25 back"] = unequal(0.3, 0.25)
+    found["both ways, 0.3 there and 0.2 back"] = unequal(0.3, 0.2)
+    found["both ways, 0.3 there and 0.1 back"] = unequal(0.3, 0.1)
+    return found
+
+
 BLOCKS: dict[str, dict[str, Make]] = {
     "null": _null(),
     "one way": _one_way(),
     "given": _given(),
     "failures": _failures(),
+    "direction": _direction(),
 }
 """Cases by block and name; what makes signals is looked up by these in each process."""

@@ -13,6 +13,9 @@ from cytodisk.errors import ParameterError
 _ROUNDING = 64.0 * np.finfo(np.float64).eps
 """Share of the largest magnitude below which a spread is nothing but rounding."""
 
+DEPENDENT = 1e-10
+"""Share of a column that others leave, below which it is nothing but rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class Rows:
@@ -102,11 +105,23 @@ def rows_with_past(series: LayerSeries, past: int) -> Rows:
     return Rows.of(rows.table(np.ones(rows.size), frames).astype(bool) & varies)
 
 
-def orthonormal(columns: list[FloatArray], size: int) -> FloatArray:
-    """Orthonormal columns (N, K) that span given ones."""
-    if not columns:
-        return np.zeros((size, 0))
-    return np.asarray(np.linalg.qr(np.column_stack(columns))[0])
+def orthonormal(columns: list[FloatArray]) -> FloatArray:
+    """Orthonormal columns (N, K) that span given ones.
+
+    Raises
+    ------
+    ParameterError
+        One of them is a linear function of those before it.
+    """
+    table = np.column_stack(columns)
+    basis, triangle = np.linalg.qr(table)
+    left = np.abs(np.diag(triangle))
+    if (left <= DEPENDENT * np.linalg.norm(table, axis=0)).any():
+        raise ParameterError(
+            "the past of target, neighbours and given signals is linearly dependent: leave out a given "
+            "signal that is constant or like another, or pass neighbours=False where sectors are all alike"
+        )
+    return np.asarray(basis)
 
 
 def _varies(rows: Rows, series: FloatArray, lag: int) -> BoolArray:

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import t as student
 
-from cytodisk.analysis.prediction.lagged_design import Rows, orthonormal
+from cytodisk.analysis.prediction.lagged_design import DEPENDENT, Rows, orthonormal
 from cytodisk.analysis.prediction.layer_series import LayerSeries
 from cytodisk.analysis.prediction.prediction_orders import Orders
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
 
-_DEPENDENT = 1e-10  # share of a column that others leave, below which it is nothing but rounding
 _LEVEL = 0.95
 
 
@@ -43,10 +42,10 @@ class Held:
         blocks = [(one, orders.own) for one in (series.target, *series.beside)]
         blocks += [(one, orders.given) for one in series.given]
         columns = [column for one, order in blocks for column in rows.lagged(one, range(1, order + 1))]
-        basis = orthonormal(columns, rows.size)
+        basis = orthonormal(columns)
         target = rows.lagged(series.target, range(1))[0]
         left = without(target, basis)
-        if left @ left <= _DEPENDENT**2 * (target @ target):
+        if left @ left <= DEPENDENT**2 * (target @ target):
             raise ParameterError(
                 "the target is a linear function of its own past and the given signals' to the last digit: "
                 "nothing is left to predict"
@@ -94,7 +93,7 @@ def source_columns(held: Held, series: LayerSeries, past: int) -> FloatArray:
     """
     columns = np.column_stack(held.rows.lagged(series.source, range(1, past + 1)))
     left = without(columns, held.basis)
-    if np.linalg.norm(left[:, 0]) <= _DEPENDENT * np.linalg.norm(columns[:, 0]):
+    if np.linalg.norm(left[:, 0]) <= DEPENDENT * np.linalg.norm(columns[:, 0]):
         raise ParameterError(
             "the past of the source is a linear function of the target's past and the given signals': pass "
             "another source, or do not give it"
@@ -121,7 +120,7 @@ def explained(square: FloatArray, with_target: FloatArray) -> FloatArray:
     total = np.zeros(with_target.shape)
     for k in range(square.shape[1]):
         pivot = left[:, k, k]
-        adds = pivot > _DEPENDENT * np.maximum(diagonal[:, k], np.finfo(np.float64).tiny)
+        adds = pivot > DEPENDENT * np.maximum(diagonal[:, k], np.finfo(np.float64).tiny)
         inverse = np.where(adds, 1.0 / np.where(adds, pivot, 1.0), 0.0)
         total[:, k] = along[:, k] ** 2 * inverse
         factor = left[:, :, k] * inverse[:, None]
