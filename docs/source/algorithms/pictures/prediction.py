@@ -14,7 +14,7 @@ for found, colour, words in (
     axes[0].hist(found["gain_null"], np.geomspace(1e-5, 0.3, 46), color=colour, histtype="step")
     axes[0].axvline(found["gain"], color=colour, label=words)
 axes[0].set(xlabel="gain (nat)", ylabel="surrogates", xscale="log", xlim=(1e-5, 0.3))
-axes[0].legend(frameon=False, loc="upper right", bbox_to_anchor=(0.97, 1.0))
+figure.legend(loc="outside upper left", ncols=2, frameon=False)
 axes[1].axhline(0.0, color="0.15", linewidth=0.6)
 low, high = (there[f"coefficient_{end}"] for end in ("low", "high"))
 axes[1].vlines(there["lag"], low, high, color="#0072B2")
