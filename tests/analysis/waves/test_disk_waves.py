@@ -30,6 +30,7 @@ def test_kind_and_speeds(kind: str, expected: str) -> None:
         assert found["speed_um_s"].item() == pytest.approx(values.attrs["speed_um_s"], rel=0.1)
 
 
+@pytest.mark.slow
 def test_a_wave_towards_lower_sectors_that_runs_inwards() -> None:
     found = cd.disk_waves(wave("spiral", direction=-1, noise=0.3), **FEW)
     mirrored = cd.disk_waves(wave("spiral", noise=0.3).isel(sector=slice(None, None, -1)), **FEW)

@@ -52,6 +52,7 @@ def test_where_sector_0_is_does_not_matter() -> None:
     assert np.abs(back - np.exp(1j * found["phase"])).max() < 1e-6
 
 
+@pytest.mark.slow
 def test_mirrored_cells_have_mirrored_waves() -> None:
     found, mirrored = (cd.edge_waves(wave()[:, ::step].to_numpy(), 5.0, **FEW) for step in (1, -1))
     assert mirrored["direction"].item() == pytest.approx(-found["direction"].item(), abs=1e-9)
@@ -105,6 +106,7 @@ def test_one_sector_shows_an_oscillation_alone() -> None:
     assert found.sizes["around"] == 1
 
 
+@pytest.mark.slow
 def test_a_wave_that_turns_round_persists_for_less_long() -> None:
     first, second = wave(frames=96, noise=0.3), wave(direction=-1, frames=96, noise=0.3)
     turning = np.where(np.arange(96)[:, None] % 48 < 24, first, second)
