@@ -13,6 +13,8 @@ from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.map.map_kind import MAP
 from cytodisk.runs.movie.movie_kind import MOVIE
 from cytodisk.runs.population.population_kind import POPULATION
+from cytodisk.runs.population.predictions.pooled_prediction_columns import POOLED_PREDICTION_TABLES
+from cytodisk.runs.population.wave_numbers.pooled_wave_columns import POOLED_WAVE_TABLES
 from cytodisk.runs.predict.prediction_columns import PREDICTION_TABLES
 from cytodisk.runs.shapes.shape_tables import SHAPE_STUDY
 from cytodisk.runs.waves.waves_columns import WAVE_TABLES
@@ -60,10 +62,21 @@ def write_page(app: Sphinx, _config: Any) -> None:
         PREDICTION_TABLES,
     )
     lines += run(
+        "Pooled predictions",
+        "``cytodisk predict`` of a batch writes these tables into ``prediction/SOURCE~TARGET/`` or "
+        "``prediction/network/`` of its folder.",
+        POOLED_PREDICTION_TABLES,
+    )
+    lines += run(
         "Waves",
         "``cytodisk waves`` writes these tables into ``waves/SIGNAL/``. Speeds are positive towards higher "
         "sectors, which is clockwise as seen in the image.",
         WAVE_TABLES,
+    )
+    lines += run(
+        "Pooled waves",
+        "``cytodisk waves`` of a batch writes these tables into ``waves/SIGNAL/`` of its folder.",
+        POOLED_WAVE_TABLES,
     )
     lines += run("Shapes", "``cytodisk shapes`` writes this table.", {"shapes": SHAPE_STUDY.cells})
     lines += ["The features follow; ``features.csv`` lists them, too.", "", *features()]
