@@ -140,3 +140,9 @@ def test_a_cell_that_turns_takes_its_wave_along() -> None:
 def test_a_wave_that_cannot_be_is_refused(kind: Any, settings: dict[str, Any], words: str) -> None:
     with pytest.raises(ParameterError, match=words):
         wave_series(kind, 0, 20, 12, **settings)
+
+
+def test_noise_that_never_forgets_its_phase_has_values_at_every_period() -> None:
+    for period in np.linspace(60.0, 150.0, 40):
+        values = wave_series("none", 0, 20, 6, period_s=float(period))
+        assert np.isfinite(values).all()

@@ -58,6 +58,6 @@ def wandering(noise: ComplexArray, step: float, persistence: float) -> ComplexAr
         of exp(i phase).
     """
     kept = np.exp(1j * step - 1.0 / persistence)
-    driven = noise * np.sqrt(1.0 - np.abs(kept) ** 2)
+    driven = noise * np.sqrt(-np.expm1(-2.0 / persistence))  # 1 - |kept|², at least 0
     driven[0] = noise[0]
     return np.asarray(lfilter([1.0], [1.0, -kept], driven, axis=0))
