@@ -18,7 +18,7 @@ import argparse
 import os
 import sys
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from typing import Any
@@ -38,10 +38,10 @@ IN_A_MOVIE, MODE = 3, 2  # periods; waves around the cell
 PREDICT: dict[str, dict[str, Any]] = {
     "one way, r = 0.3": {"strength": 0.3},
     "one way, r = 0.5": {"strength": 0.5},
-    "one way, r = 0.5, neighbouring frames alike": {"kind": "ar1", "strength": 0.5},
+    "one way, r = 0.5, neighbouring frames alike": {"kind": "ar1", "strength": 0.5, "edge_speed_px": 0.5},
     "both ways, r = 0.4": {"coupling": "both ways", "strength": 0.4},
     "neither": {"coupling": "none"},
-    "neither, neighbouring frames alike": {"kind": "ar1", "coupling": "none"},
+    "neither, neighbouring frames alike": {"kind": "ar1", "coupling": "none", "edge_speed_px": 0.5},
     "driver of both, r = 0.6": {"coupling": "common driver", "strength": 0.6},
     "driver of both, given": {"coupling": "common driver", "strength": 0.6, "give": True},
 }
@@ -127,7 +127,7 @@ def wave_row(kind: str, speed: float, trials: Sequence[dict[str, float]]) -> lis
     ]
 
 
-def print_table(heads: Sequence[str], rows: Sequence[list[str | Figure]]) -> bool:
+def print_table(heads: Sequence[str], rows: Iterable[list[str | Figure]]) -> bool:
     """A Markdown table with yardsticks; whether all are met."""
     print(f"| {' | '.join(heads)} |\n|{'---|' * len(heads)}")
     good = True
@@ -149,7 +149,7 @@ def run(movies: int, only: Sequence[str], each: Callable[..., Any]) -> bool:
     """Print what was asked for; `each` is a `map`, of one process or several."""
     good = True
     if "predict" in only:
-        rows = [predict_row(case, list(each(partial(predicted, case), range(movies)))) for case in PREDICT]
+        rows = (predict_row(case, list(each(partial(predicted, case), range(movies)))) for case in PREDICT)
         heads = (
             "channel and edge",
             "p ≤ 0.05",
@@ -160,7 +160,7 @@ def run(movies: int, only: Sequence[str], each: Callable[..., Any]) -> bool:
         good &= print_table(heads, rows)
     if "waves" in only:
         cases = [("running", speed) for speed in PERIODS] + [("standing", 0.5), ("none", 0.5)]
-        rows = [wave_row(*case, list(each(partial(waved, *case), range(movies)))) for case in cases]
+        rows = (wave_row(*case, list(each(partial(waved, *case), range(movies)))) for case in cases)
         good &= print_table(("edge", "right kind", "right direction", "largest error of the speed"), rows)
     return good
 
