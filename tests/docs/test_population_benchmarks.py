@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
@@ -89,3 +90,27 @@ def test_a_region_grows_and_shrinks_around_sector_0(load: Any) -> None:
     assert np.shape(figures) == (3, len(benchmark.COLUMNS))
     assert figures[0, 0] > 0.9
     assert not figures[0, 2:].any()
+
+
+@pytest.mark.parametrize(("experiments", "level"), [(3, 0.0), (5, 0.0), (6, 2 / 64), (8, 12 / 256)])
+def test_turned_signs_attain_these_levels(load: Any, experiments: int, level: float) -> None:
+    assert load("drawn_studies").attained(experiments) == pytest.approx(level)
+
+
+def test_a_drawn_study_takes_each_stored_cell_once(load: Any) -> None:
+    store = [pd.DataFrame({"value": [float(number)], "cell": 0}) for number in range(40)]
+    conditions = {"control": (4, store)}
+    rows, cells = load("drawn_studies").drawn_study(np.random.default_rng(0), conditions)
+    assert cells["experiment"].nunique() == 4
+    assert cells.groupby("experiment").size().between(1, 5).all()
+    assert rows["value"].is_unique
+    assert len(rows) == len(cells)
+
+
+@pytest.mark.slow
+def test_a_strong_prediction_is_found_over_experiments_and_none_without(load: Any) -> None:
+    benchmark = load("prediction_over_experiments")
+    none, one_way = (benchmark.store_of(0, 30, coupling) for coupling in ("none", "one way"))
+    assert set(none[0]["channel"]) == {"signal → velocity", "velocity → signal"}
+    assert benchmark.against_zero(0, 4, 6, none)["score above"] <= 1
+    assert benchmark.against_zero(0, 4, 6, one_way)["score, true link"] >= 1
