@@ -134,7 +134,7 @@ def test_another_run_is_not_resumed(write_stack: WriteStack, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("which", ["masks", "signal"])
-@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("workers", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_a_damaged_frame_loses_that_frame_alone(
     write_stack: WriteStack, tmp_path: Path, which: str, workers: int
 ) -> None:
