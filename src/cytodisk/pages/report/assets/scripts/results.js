@@ -139,7 +139,7 @@
         d += `M${chart.toX(frame * step).toFixed(1)} ${(chart.toY(sector) + bar / 2).toFixed(1)}v${(-bar).toFixed(1)}`;
       }
       const dark = found.edge || byPhase;
-      chart.marks.append(svg("path", { d, stroke: dark ? "black" : "white", "stroke-width": 1.3, class: "crests" }));
+      chart.marks.append(svg("path", { d, stroke: dark ? "black" : "white", "stroke-width": 2, class: "crests" }));
     });
     const bars = isWave(found, layer) ? "bars: crests of the wave" : "no wave beyond chance, so no crests";
     write("waves-title", `${found.edge ? "edge velocity" : `${found.signal}, layer ${layer}`}; ${bars}`);
