@@ -21,7 +21,7 @@ from cytodisk.pages.compared_layers import (
     write_method_key,
 )
 from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
-from cytodisk.pages.sheet import Sheet
+from cytodisk.pages.sheet import Sheet, broken_lines
 from cytodisk.plot.layer_looks import shown_layers
 from cytodisk.plot.style import (
     SIGNAL_COLOURS,
@@ -38,7 +38,7 @@ from cytodisk.runs.compare_windows.comparison import Comparison
 from cytodisk.scale import Scale
 from cytodisk.store.figures_folder import drawing
 
-_LEFT, _TOP, _GAP, _BAR = 14.0, 11.0, 3.0, 16.0  # mm
+_LEFT, _TOP, _GAP, _BAR, _LINE = 14.0, 11.0, 3.0, 16.0, 3.2  # mm
 _KEY = (
     "By layer: medians over frames, bands are their quartiles.",
     "Through time: mean over layers, bands from the lowest layer to the highest.",
@@ -103,14 +103,17 @@ def write_compared_movie(
         number = names.index(channel)
         name += f"_{file_names(names)[number]}"
     layers = shown_layers(comparison.provenance["parameters"]["layers"]) if channel is not None else []
-    maps = _TOP + len(layers) * (_MAP + _MAP_GAP) + 8.0 if layers else 0.0
+    titles = _titles(methods)
+    head = _TOP + _LINE * (max(title.count("\n") for title in titles.values()) if layers else 0)
+    maps = head + len(layers) * (_MAP + _MAP_GAP) + 8.0 if layers else 0.0
     with drawing(comparison.path, *(f"{name}.{kind}" for kind in chosen)) as folder, paper_style():
         top = maps + key_height(methods) + 9.0
         foot = top + 2 * _PANEL_STEP - 1.0
         sheet = Sheet(foot + 8.0)
         if channel is not None:
             signals = {method: comparison.activity(cell, method).isel(channel=number) for method in methods}
-            _draw_maps(sheet, signals, layers, comparison.scale, shown_name(channel))
+            _draw_maps(sheet, signals, layers, comparison.scale, head, titles)
+            sheet.text(_LEFT, 3.0, f"{shown_name(channel)}, mean of each window; grey: the window is empty")
         write_method_key(sheet, methods, _LEFT, maps + 2.0)
         _draw_measures(sheet, comparison, cell, channel, methods, top)
         for number, words in enumerate(_KEY):
@@ -179,12 +182,17 @@ def draw_displacement(
 
 
 def _draw_maps(
-    sheet: Sheet, signals: dict[str, xr.DataArray], layers: Sequence[int], scale: Scale, channel: str
+    sheet: Sheet,
+    signals: dict[str, xr.DataArray],
+    layers: Sequence[int],
+    scale: Scale,
+    head: float,
+    titles: dict[str, str],
 ) -> None:
     """Activity maps, a column a method and a row a layer, which has the same colours for all methods."""
-    width = (WIDE_MM - _LEFT - _BAR - _GAP * (len(signals) - 1)) / len(signals)
+    width = _width(len(signals))
     for row, layer in enumerate(layers):
-        top = _TOP + row * (_MAP + _MAP_GAP)
+        top = head + row * (_MAP + _MAP_GAP)
         limits = signal_limits(np.stack([values.sel(layer=layer) for values in signals.values()]))
         for column, (method, values) in enumerate(signals.items()):
             ax = sheet.axes(_LEFT + column * (width + _GAP), top, width, _MAP)
@@ -196,10 +204,20 @@ def _draw_maps(
             if row < len(layers) - 1:
                 ax.set(xlabel="", xticklabels=[])
             if not row:
-                ax.set_title(TITLES[method], loc="left")
+                ax.set_title(titles[method], loc="left")
         bar = sheet.axes(WIDE_MM - _BAR + 2.0, top, 2.0, _MAP)
         colour_bar(drawn, bar, "mean (a.u.)", extend="both")
-    sheet.text(_LEFT, 3.0, f"{channel}, mean of each window; grey: the window is empty")
+
+
+def _width(columns: int) -> float:
+    """Of one of so many maps beside each other, in mm."""
+    return (WIDE_MM - _LEFT - _BAR - _GAP * (columns - 1)) / columns
+
+
+def _titles(methods: Sequence[str]) -> dict[str, str]:
+    """Names of methods in as many lines as the widths of their maps ask for."""
+    room = 0.8 * _width(len(methods))  # titles are larger than other text, and need a gap
+    return {method: "\n".join(broken_lines(TITLES[method].split(" "), " ", room)) for method in methods}
 
 
 def _draw_map(ax: Axes, values: xr.DataArray, limits: tuple[float, float], scale: Scale) -> AxesImage:
