@@ -158,9 +158,24 @@ def test_neighbours_of_a_part_of_the_edge_are_not_joined_at_its_ends() -> None:
     assert cd.predict(source, target, **QUICK)["sectors"] == 6
     assert cd.predict(source, target, edge_sectors=9, **QUICK)["sectors"] == 4
     assert cd.predict(source, target, edge_sectors=9, neighbours=False, **QUICK)["sectors"] == 6
-    apart = {"source": source.isel(sector=[0, 3]), "target": target.isel(sector=[0, 3])}
+    whole = {"source": source, "target": target}
+    apart = {name: one.isel(sector=[0, 3]) for name, one in whole.items()}
     with pytest.raises(ParameterError, match=r"both its neighbours.*pass neighbours=False"):
         cd.predict(**apart, **QUICK)
+    pairs = {name: one.assign_coords(sector=[0, 1, 3, 4, 6, 7]) for name, one in whole.items()}
+    with pytest.raises(ParameterError, match="both its neighbours"):  # each has one
+        cd.predict(**pairs, edge_sectors=9, **QUICK)
+
+
+def test_others_than_the_source_must_fit_each_other_too() -> None:
+    source, target = driven(sectors=4)
+    layers = xr.DataArray(np.stack([target, target], axis=1), {"layer": [0, 1]}, ("time", "layer", "sector"))
+    for given, words in (
+        (layers.assign_coords(layer=[1, 2]), "target and given 0 do not have the same"),
+        (layers.isel(layer=[0]), "target and given 0 do not have the same"),
+    ):
+        with pytest.raises(ParameterError, match=words):
+            cd.predict(source, layers, [given], **QUICK)
 
 
 def test_a_frame_that_is_missing_takes_the_rows_that_look_back_on_it() -> None:

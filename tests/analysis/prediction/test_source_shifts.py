@@ -7,8 +7,10 @@ from cytodisk.analysis.prediction.chance_gains import chance_gains, split_source
 from cytodisk.analysis.prediction.lagged_design import rows_with_past
 from cytodisk.analysis.prediction.layer_series import LayerSeries
 from cytodisk.analysis.prediction.pooled_autoregression import Held, explained
+from cytodisk.analysis.prediction.predict import predict
 from cytodisk.analysis.prediction.prediction_orders import Orders
 from cytodisk.analysis.prediction.source_shifts import ShiftedSource, Shifts, circle_of
+from cytodisk.errors import ParameterError
 
 FRAMES, SECTORS, PAST = 30, 4, 3
 
@@ -116,9 +118,10 @@ def test_slow_series_that_know_nothing_of_each_other_stay_whole() -> None:
     assert followed.var() < 0.05 * rest.var()
 
 
-def test_where_gaps_leave_too_few_rows_all_of_the_source_is_rest() -> None:
-    source, target = np.random.default_rng(7).normal(size=(2, FRAMES, SECTORS))
-    source[::4] = np.nan
-    followed, rest = split_source(LayerSeries(target, source, (), (), True), Orders(2, 0, 1), PAST)
-    assert not followed.any()
-    np.testing.assert_allclose(rest, np.nan_to_num(source - np.nanmean(source, axis=0)))
+def test_gaps_that_leave_surrogates_too_few_rows_are_refused() -> None:
+    source, target = np.random.default_rng(7).normal(size=(2, 40, SECTORS))
+    source[::7], target[::7] = np.nan, np.nan  # six on end: enough for the model, not for white series
+    found = predict(source, target, order=2, source_order=PAST, surrogates=0)
+    assert np.isfinite(found["gain"])
+    with pytest.raises(ParameterError, match=r"gaps leave 2\d rows.*fill in short gaps.*surrogates=0"):
+        predict(source, target, order=2, source_order=PAST, surrogates=99)

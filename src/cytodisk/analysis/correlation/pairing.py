@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -76,7 +77,7 @@ def aligned_series(signals: Mapping[str, Any]) -> tuple[list[xr.DataArray], Scal
     Parameters
     ----------
     signals : mapping of str to DataArray or array_like
-        As for `cross_correlate`, by their names in messages; the first is what others are compared with.
+        As for `cross_correlate`, by their names in messages.
 
     Returns
     -------
@@ -92,14 +93,13 @@ def aligned_series(signals: Mapping[str, Any]) -> tuple[list[xr.DataArray], Scal
     """
     series = {name: _named(values, name) for name, values in signals.items()}
     steps = {name: _interval(values, name) for name, values in series.items()}
-    first, *others = series
     known = [name for name, step in steps.items() if step is not None]
     for name in known[1:]:
         if steps[name] != steps[known[0]]:
             both = sorted({float(steps[one] or 0.0) for one in (known[0], name)})
             raise ParameterError(f"{known[0]} and {name} have other seconds between frames: {both}")
-    for name in others:
-        _check_fit(first, series[first], name, series[name])
+    for name_a, name_b in combinations(series, 2):  # dims that the first has not may differ between others
+        _check_fit(name_a, series[name_a], name_b, series[name_b])
     plain = [values.reset_coords(drop=True) for values in series.values()]
     return plain, Scale(frame_interval_s=steps[known[0]] if known else None)
 

@@ -48,7 +48,7 @@ def chance_gains(
     Raises
     ------
     ParameterError
-        There are too few shifts.
+        There are too few shifts, or gaps leave too few rows.
 
     Notes
     -----
@@ -84,8 +84,12 @@ def chance_gains(
 def split_source(series: LayerSeries, orders: Orders, past: int) -> tuple[FloatArray, FloatArray]:
     """What all others, now and before, say of the source, and the rest, as tables (T, S).
 
-    Both are 0 where they are not known; the rest has mean 0 in each sector. Where gaps leave fewer rows than
-    twice the coefficients, all of the source is rest.
+    Both are 0 where they are not known; the rest has mean 0 in each sector.
+
+    Raises
+    ------
+    ParameterError
+        Gaps leave fewer rows than twice the coefficients.
 
     Notes
     -----
@@ -104,7 +108,11 @@ def split_source(series: LayerSeries, orders: Orders, past: int) -> tuple[FloatA
     rows = Rows.of(np.isfinite(target) & _has_past(white))
     columns = _columns(rows, white)
     if rows.size - rows.sectors < 2 * columns.shape[1]:
-        return np.zeros(known.shape), source
+        raise ParameterError(
+            f"gaps leave {rows.size} rows (frames times sectors) with the {past} frames before that "
+            f"surrogates need, too few for {columns.shape[1]} coefficients: fill in short gaps, or pass a "
+            "smaller max_order, or surrogates=0"
+        )
     says = np.linalg.lstsq(columns, rows.lagged(target, range(1))[0], rcond=None)[0]
     rows = Rows.of(known & _has_past(blocks))
     followed = rows.table(_columns(rows, blocks) @ says, len(known))

@@ -96,9 +96,9 @@ def rows_with_past(series: LayerSeries, past: int) -> Rows:
     rows = Rows.of(np.concatenate([np.zeros((past, known.shape[1]), dtype=bool), known]))
     varies = _varies(rows, series.target, 0) & _varies(rows, series.source, 1)
     if not varies.any():
-        still = "target" if not _varies(rows, series.target, 0).any() else "source"
-        if not (_varies(rows, series.target, 0).any() and _varies(rows, series.source, 1).any()):
-            raise ParameterError(f"{still} is constant in every sector: what never changes has no prediction")
+        for name, one, lag in (("target", series.target, 0), ("source", series.source, 1)):
+            if not _varies(rows, one, lag).any():
+                raise ParameterError(f"{name} is constant in every sector: pass a signal that changes")
         raise ParameterError(
             "in every sector target or source is constant: pass sectors in which both change"
         )
@@ -140,9 +140,9 @@ def _why_none(series: LayerSeries, past: int) -> str:
     for name, one in (("target", series.target), ("source", series.source)):
         if not np.isfinite(one).any():
             return f"{name} is NaN in every frame and sector"
-    for one in series.beside:
-        if not np.isfinite(one).any(axis=0).any():
-            return "no sector has both its neighbours among those passed: pass neighbours=False"
+    sides = [np.isfinite(one).any(axis=0) for one in series.beside]
+    if sides and not np.logical_and.reduce(sides).any():
+        return "no sector has both its neighbours among those passed: pass neighbours=False"
     return (
         f"no sector has {past + 1} frames on end with all signals: pass a smaller max_order, or fill in "
         "short gaps"
