@@ -12,7 +12,7 @@ from cytodisk.analysis.correlation.prepared_series import interpolated
 from cytodisk.arrays import FloatArray
 
 _OWN_SHAPE = 3.0  # a sector's own spectrum over the mean one is smoothed by frames / this
-_BROAD = 6.0  # the broad mean spectrum is smoothed by frames / this
+_DEGREE = 3  # of the polynomial that is the broad mean spectrum, in logarithms
 _USUAL = 0.9  # quantile of the scatter of surrogates that a spectrum must exceed
 _FINE = 1.0  # bins of twice the duration by which the fine mean spectrum is smoothed
 
@@ -52,7 +52,7 @@ class SectorSpectra:
         own = gaussian_filter1d(power, len(series) / _OWN_SHAPE, axis=0, mode="nearest")
         mean = power.mean(axis=1) + np.finfo(np.float64).tiny
         return cls(
-            np.exp(gaussian_filter1d(np.log(mean), len(series) / _BROAD, mode="nearest")),
+            _curve(mean),
             gaussian_filter1d(mean, _FINE, mode="nearest"),
             own / np.maximum(own.mean(axis=1), np.finfo(np.float64).tiny)[:, None],
         )
@@ -86,3 +86,11 @@ def fine_share(sums: FloatArray, by_chance: FloatArray) -> float:
     usual = chance.mean(axis=1)
     scatter = np.quantile((chance - usual[:, None]).var(axis=0), _USUAL)
     return float(np.sqrt(np.clip(1.0 - scatter / max((logs - usual).var(), 1e-12), 0.0, 1.0)))
+
+
+def _curve(power: FloatArray) -> FloatArray:
+    """Smooth curve through a spectrum (T + 1,): a polynomial in logarithms; octaves count alike."""
+    number = np.arange(1, len(power))
+    abscissa = np.log(number)
+    fitted = np.polynomial.Polynomial.fit(abscissa, np.log(power[1:]), _DEGREE, w=number**-0.5)
+    return np.asarray(np.exp(fitted(np.concatenate([abscissa[:1], abscissa]))))
