@@ -84,6 +84,7 @@ from .analysis.event_average import average_around as average_around
 
 # Prediction: does the past of one signal predict another
 from .analysis.prediction.predict import predict as predict
+from .analysis.prediction.direction_support import weaker_direction as weaker_direction
 from .analysis.prediction.prediction_parameters import PredictionParameters as PredictionParameters
 
 # Waves: do they run around the cell, or inwards

@@ -12,6 +12,7 @@ from statsmodels.tsa import stattools
 from cytodisk.analysis.correlation.cross_correlation import cross_correlate
 from cytodisk.analysis.correlation.prepared_series import (
     KPSS_LIMIT,
+    drifting_share,
     interpolated,
     kpss,
     prepare_series,
@@ -183,3 +184,10 @@ def test_kpss_says_nothing_of_constants_and_short_series() -> None:
 def test_kpss_holds_its_level_for_noise() -> None:
     share = (kpss(noise(7, 400, 2000)) > KPSS_LIMIT).mean()
     assert 0.025 < share < 0.065  # 0.05; at this length lags of the long-run variance take some of it
+
+
+def test_the_share_of_drifting_series_is_of_those_of_which_it_is_known() -> None:
+    line = np.linspace(0.0, 6.0, 80)[:, None] + noise(3, 80, 1, missing=0.1)
+    still, constant = noise(4, 80, 1), np.ones((80, 2))
+    assert drifting_share(np.concatenate([line, still, constant], axis=1)) == 0.5
+    assert drifting_share(constant) == 0.0

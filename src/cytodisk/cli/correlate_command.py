@@ -48,7 +48,8 @@ def correlate_command(
     figures: Figures = 4,
     quiet: Quiet = False,
 ) -> None:
-    from cytodisk.runs.correlate.correlate_study import channels_of, correlate_study
+    from cytodisk.runs.correlate.correlate_study import correlate_study
+    from cytodisk.runs.used_series.chosen_of_study import channels_of
 
     formats = given.formats(figures)
     if is_batch(study):

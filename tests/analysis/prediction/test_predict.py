@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 
 import cytodisk as cd
-from cytodisk.analysis.prediction.direction_support import weaker_direction
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError, StationarityWarning
 
@@ -107,8 +106,8 @@ def test_noise_of_measurement_makes_the_other_direction_seem_true_and_reversed_t
     there, back = cd.predict(source, target, **QUICK), cd.predict(target, source, **QUICK)
     assert there["p"] == back["p"] == 0.01
     gains = (there["gain"], back["gain"], there["gain_reversed"], back["gain_reversed"])
-    assert not weaker_direction(*gains)
-    assert weaker_direction(back["gain"], there["gain"], back["gain_reversed"], there["gain_reversed"])
+    assert not cd.weaker_direction(*gains)
+    assert cd.weaker_direction(back["gain"], there["gain"], back["gain_reversed"], there["gain_reversed"])
 
 
 def test_two_true_directions_are_both_kept() -> None:
@@ -116,13 +115,13 @@ def test_two_true_directions_are_both_kept() -> None:
     source, target = pair["source"].isel(layer=0), pair["target"]
     there, back = cd.predict(source, target, **QUICK), cd.predict(target, source, **QUICK)
     gains = (there["gain"], back["gain"], there["gain_reversed"], back["gain_reversed"])
-    assert not weaker_direction(*gains)
-    assert not weaker_direction(back["gain"], there["gain"], back["gain_reversed"], there["gain_reversed"])
+    assert not cd.weaker_direction(*gains)
+    assert not cd.weaker_direction(back["gain"], there["gain"], back["gain_reversed"], there["gain_reversed"])
 
 
 def test_gains_that_are_not_known_mark_no_direction() -> None:
     unknown = [0.1, np.nan]
-    assert not weaker_direction(unknown, unknown, unknown, unknown).any()
+    assert not cd.weaker_direction(unknown, unknown, unknown, unknown).any()
 
 
 def test_a_common_driver_predicts_unless_it_is_given() -> None:

@@ -88,6 +88,19 @@ def test_a_spiral_runs_inwards_and_around(tmp_path: Path) -> None:
     np.testing.assert_array_equal(inside, expected)
 
 
+def test_a_layer_with_an_empty_window_has_waves_without_a_speed_along_it(tmp_path: Path) -> None:
+    values = wave(layers=2)
+    values[:, 1, 4] = np.nan
+    study = series_study(tmp_path, [values])
+    for axis in "yx":
+        place = study.given[0][f"centroid_{axis}"]
+        study.given[0][f"centroid_{axis}"] = place.where(values.notnull().values)
+    layers = run_waves(study, "Rac1", geometry=False, **FEW).layers
+    assert layers["status"].tolist() == ["ok", "ok"]
+    assert layers["edge_speed"].isna().tolist() == [False, True]
+    assert layers["speed"].iloc[1] == pytest.approx(0.01, rel=0.1)
+
+
 def test_without_a_scale_numbers_are_in_frames_and_pixels(tmp_path: Path) -> None:
     found = run_waves(series_study(tmp_path, [wave()], scale=Scale()), **FEW)
     row = found.cells.iloc[0]
@@ -140,6 +153,12 @@ def test_wrong_names_are_refused_with_what_there_is(tmp_path: Path) -> None:
         run_waves(study, "Rac1", layer=5)
     with pytest.raises(ParameterError, match="layer 1 is given, but velocity is that of the edge alone"):
         run_waves(study, layer=1)
+    with pytest.raises(ParameterError, match="frames 5:48 are not in the movie: it has 0:47"):
+        run_waves(study, frames=(5, 48))
+    for cell in study.given.values():
+        cell["channel"] = ["velocity"]
+    with pytest.raises(ParameterError, match="a channel called 'velocity'"):
+        run_waves(study)
     with pytest.raises(ParameterError, match="has no cell 4"):
         run_waves(study, cells=[4])
     study.provenance["run"] = "map"

@@ -16,8 +16,7 @@ from cytodisk.analysis.correlation.pairing import Pair, named_series, paired
 from cytodisk.analysis.correlation.prepared_series import (
     DRIFTING_SHARE,
     default_frames,
-    drifts,
-    kpss,
+    drifting_share,
     prepare_series,
 )
 from cytodisk.analysis.correlation.ranks import scored
@@ -223,9 +222,7 @@ def drifting_shares(a: xr.DataArray, b: xr.DataArray) -> dict[str, float]:
     """Share of the series whose level drifts; warns where it is large."""
     shares = {}
     for name, series in (("a", a), ("b", b)):
-        known = np.isfinite(kpss(series))
-        share = float(drifts(series)[known].mean()) if known.any() else 0.0
-        shares[f"drifting_{name}"] = share
+        shares[f"drifting_{name}"] = share = drifting_share(series)
         if share > DRIFTING_SHARE:
             warnings.warn(
                 f"the level of {share:.0%} of the series of {name} drifts: they "

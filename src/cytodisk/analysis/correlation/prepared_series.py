@@ -165,6 +165,18 @@ def drifts(values: Any) -> BoolArray:
     return _of_each(_drifts, values).astype(bool)
 
 
+def drifting_share(values: Any) -> float:
+    """Share of the series that drift, of those of which it is known; 0 where it is known of none.
+
+    Parameters
+    ----------
+    values : array_like of shape (T, …)
+        NaN is left out.
+    """
+    known = np.isfinite(kpss(values))
+    return float(drifts(values)[known].mean()) if known.any() else 0.0
+
+
 def _of_each(measure: Callable[[FloatArray], float], values: Any) -> FloatArray:
     """A measure of each series without its NaN."""
     series = np.asarray(values, dtype=np.float64)

@@ -47,7 +47,8 @@ def weaker_direction(gain: Any, gain_back: Any, gain_reversed: Any, gain_back_re
 
     Examples
     --------
-    >>> weaker_direction([0.002, 0.1], [0.05, 0.1], [0.05, 0.08], [0.001, 0.09])
+    >>> import cytodisk as cd
+    >>> cd.weaker_direction([0.002, 0.1], [0.05, 0.1], [0.05, 0.08], [0.001, 0.09])
     array([ True, False])
     """
     forth, back, forth_reversed, back_reversed = (

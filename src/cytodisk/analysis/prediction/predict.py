@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.analysis.correlation.peaks import false_discovery
-from cytodisk.analysis.correlation.prepared_series import DRIFTING_SHARE, drifts, kpss
+from cytodisk.analysis.correlation.prepared_series import DRIFTING_SHARE, drifting_share
 from cytodisk.analysis.prediction.chance_gains import chance_gains
 from cytodisk.analysis.prediction.lagged_design import rows_with_past
 from cytodisk.analysis.prediction.layer_series import LayerSeries, Signals
@@ -59,7 +59,8 @@ def predict(
     -------
     Dataset with the dim layer, where there are layers
         gain, ln of the sum of squared errors without the source over that with it, at least 0 (nats);
-        gain_reversed, the same on reversed time, for `weaker_direction`;
+        gain_reversed, the same on reversed time, for `weaker_direction` (NaN where too few rows have a
+        whole future);
         gain_excess, gain minus the surrogates' mean, which is 0 on average where nothing predicts;
         likelihood_ratio, rows times gain; order, of the target's and its neighbours' past; given_order;
         source_order; n, rows; sectors used; effect, the sum of the source's coefficients in standard
@@ -86,6 +87,7 @@ def predict(
 
     See Also
     --------
+    weaker_direction : Whether a direction may be noise of measurement alone.
     cross_correlate : Correlation at every lag, which does not ask what predicts what.
 
     Notes
@@ -131,10 +133,8 @@ def predict(
 
 def _drifting(signals: Signals) -> dict[str, float]:
     """Share of the series of source and target whose level drifts; warns where it is large in both."""
-    shares = {}
-    for name, series in (("source", signals.source), ("target", signals.target)):
-        known = np.isfinite(kpss(series))
-        shares[f"drifting_{name}"] = float(drifts(series)[known].mean()) if known.any() else 0.0
+    both = {"source": signals.source, "target": signals.target}
+    shares = {f"drifting_{name}": drifting_share(series) for name, series in both.items()}
     if min(shares.values()) > DRIFTING_SHARE:
         warnings.warn(
             f"the level of {shares['drifting_source']:.0%} of the series of source drifts, and of "

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import pandas as pd
 
-from cytodisk.errors import ParameterError, StudyError
+from cytodisk.errors import ParameterError
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.correlate.correlate_cell import CellCorrelation
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
@@ -16,12 +15,17 @@ from cytodisk.runs.correlate.correlation_tables import merged, of_cell
 from cytodisk.runs.flagged_cells import flags_by_cell
 from cytodisk.runs.qc_flags.one_correlation import UnwrittenCorrelation
 from cytodisk.runs.run_options import Progress
+from cytodisk.runs.used_series.chosen_of_study import (
+    channels_of,
+    check_frames,
+    chosen_cells,
+    refuse_velocity_channel,
+    usual_lag,
+)
 from cytodisk.runs.used_series.progress_phases import percents
 from cytodisk.runs.versions import installed
 from cytodisk.store.correlation_store import Correlation, write_correlation
 from cytodisk.store.study import Study
-
-_LONGEST_LAG = 20  # frames, unless the user asks for more
 
 
 def correlate_study(
@@ -71,7 +75,7 @@ def correlate_study(
     options = CorrelateParameters.chosen(parameters, settings)
     names = channels_of(study)
     _check_names(names, signal, with_, options)
-    _check_frames(study, options)
+    check_frames(study, options)
     max_lag = options.max_lag if options.max_lag is not None else usual_lag(study, chosen, options.min_pairs)
     correlating = CellCorrelation(study, signal, with_, max_lag, options)
     found: dict[str, list[pd.DataFrame]] = {}
@@ -98,46 +102,6 @@ def correlate_study(
     return write_correlation(
         study.path, signal, with_, tables, CORRELATION_TABLES, content, options.name, csv
     )
-
-
-def channels_of(study: Study) -> list[str]:
-    """Names of the channels that a movie's study has in its windows.
-
-    Raises
-    ------
-    StudyError
-        It is not that of a movie, or was made without a signal.
-    """
-    if not study.is_movie:
-        raise StudyError(
-            f"study {study.path} is not that of a movie: without time there is nothing to correlate; use "
-            "cytodisk movie"
-        )
-    activity = study.activity(int(study.cells["cell"].iloc[0]))
-    if "mean" not in activity:
-        raise StudyError(f"study {study.path} has no signal: run cytodisk movie with --signal")
-    return [str(name) for name in activity["channel"].to_numpy()]
-
-
-def chosen_cells(study: Study, cells: list[int] | None) -> list[int]:
-    """Numbers of the cells that were asked for, or of all; raises ParameterError if one is not there."""
-    there = sorted(int(cell) for cell in study.cells["cell"].unique())
-    missing = [cell for cell in cells or [] if cell not in there]
-    if missing:
-        raise ParameterError(
-            f"cells: study {study.path} has no cell {missing[0]}, it has {len(there)} from 0"
-        )
-    return sorted({int(cell) for cell in cells}) if cells else there
-
-
-def refuse_velocity_channel(names: Sequence[str]) -> None:
-    """Raise ParameterError if a channel is called as the velocity of the edge is."""
-    clash = sorted(set(names) & set(VELOCITIES))
-    if clash:
-        raise ParameterError(
-            f"the study has a channel called {clash[0]!r}, as the velocity of the edge is: run cytodisk "
-            "movie again with --channels to name it otherwise"
-        )
 
 
 def _check_names(names: list[str], signal: str, with_: str, options: CorrelateParameters) -> None:
@@ -168,20 +132,3 @@ def _check_names(names: list[str], signal: str, with_: str, options: CorrelatePa
         raise ParameterError(
             "pairs need two signals: velocity has no windows inside; pass with another signal"
         )
-
-
-def _check_frames(study: Study, options: CorrelateParameters) -> None:
-    """Refuse frames beyond those of all cells; a cell that ends sooner is used as far as it goes."""
-    there = study.cells["frame"]
-    if options.frames is not None and options.frames[1] > there.max():
-        first, last = options.frames
-        raise ParameterError(
-            f"frames {first}:{last} are not in the movie: it has {there.min()}:{there.max()}"
-        )
-
-
-def usual_lag(study: Study, cells: Sequence[int], min_pairs: int) -> int:
-    """A quarter of the longest cell's frames, at most twenty, and what leaves enough pairs of frames."""
-    there = study.cells
-    frames = max(int((there["cell"] == cell).sum()) for cell in cells)
-    return max(1, min(_LONGEST_LAG, frames // 4, frames - min_pairs))

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import xarray as xr
 
 from cytodisk.errors import PopulationError
-from cytodisk.runs.correlate.correlate_study import channels_of
 from cytodisk.runs.population.movies.correlation_summaries import at_peak, correlated_channels
 from cytodisk.runs.population.movies.event_summaries import around_onsets
 from cytodisk.runs.population.movies.prediction_summaries import gains
@@ -19,6 +18,7 @@ from cytodisk.runs.population.movies.summary_names import (
 )
 from cytodisk.runs.population.movies.time_summaries import mean_velocity, over_time
 from cytodisk.runs.population.movies.wave_summaries import wave_order
+from cytodisk.runs.used_series.chosen_of_study import channels_of
 from cytodisk.store.study import Study
 
 REACH = 10

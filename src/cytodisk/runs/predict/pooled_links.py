@@ -41,7 +41,7 @@ def pooled_table(links: Sequence[TestedLink], seed: int) -> pd.DataFrame:
 
     Notes
     -----
-    Gains are weighted by the rows of their model, so that their sum is half of the joint likelihood ratio.
+    Gains are weighted by the rows of their model, so that their sum is the joint likelihood ratio.
     Shifts of one cell have nothing to do with those of another, so that any may come together: a cell with
     fewer of them has some again.
     """

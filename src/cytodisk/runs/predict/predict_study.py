@@ -8,12 +8,6 @@ import pandas as pd
 
 from cytodisk.errors import ParameterError
 from cytodisk.runs.channel_names import VELOCITIES
-from cytodisk.runs.correlate.correlate_study import (
-    channels_of,
-    chosen_cells,
-    refuse_velocity_channel,
-    usual_lag,
-)
 from cytodisk.runs.flagged_cells import prediction_flags_by_cell
 from cytodisk.runs.predict.pooled_links import pooled_table
 from cytodisk.runs.predict.predict_cell import CellPrediction, PredictedCell
@@ -21,6 +15,13 @@ from cytodisk.runs.predict.predict_parameters import PredictParameters
 from cytodisk.runs.predict.prediction_columns import PREDICTION_TABLES
 from cytodisk.runs.qc_flags.one_prediction import UnwrittenPrediction
 from cytodisk.runs.run_options import Progress
+from cytodisk.runs.used_series.chosen_of_study import (
+    channels_of,
+    check_frames,
+    chosen_cells,
+    refuse_velocity_channel,
+    usual_lag,
+)
 from cytodisk.runs.used_series.progress_phases import percents
 from cytodisk.runs.versions import installed
 from cytodisk.store.predictions.prediction_store import Prediction, write_prediction
@@ -77,7 +78,7 @@ def predict_study(
     refuse_velocity_channel(channels)
     tested = _tested(channels, source, target)
     names = _with_given(tested, channels, options.given)
-    _check_frames(study, options)
+    check_frames(study, options)
     network = source is None
     lag = max(options.max_order, usual_lag(study, chosen, _FEWEST_PAIRS))
     predicting = CellPrediction(study, tested, names, network, lag, options)
@@ -173,13 +174,3 @@ def _with_given(
 def _others(left: list[str], names: tuple[str, ...]) -> list[str]:
     """Signals that were left out; of two velocities one is enough."""
     return [name for name in left if name not in VELOCITIES or not set(VELOCITIES) & set(names)]
-
-
-def _check_frames(study: Study, options: PredictParameters) -> None:
-    """Refuse frames beyond those of all cells; a cell that ends sooner is used as far as it goes."""
-    there = study.cells["frame"]
-    if options.frames is not None and options.frames[1] > there.max():
-        first, last = options.frames
-        raise ParameterError(
-            f"frames {first}:{last} are not in the movie: it has {there.min()}:{there.max()}"
-        )

@@ -14,7 +14,7 @@ import xarray as xr
 from cytodisk.analysis.controls.without_controls import FEWEST_FRAMES, without_controls
 from cytodisk.analysis.correlation.jitter_mark import velocity_jitter
 from cytodisk.analysis.correlation.peaks import false_discovery
-from cytodisk.analysis.correlation.prepared_series import drifts
+from cytodisk.analysis.correlation.prepared_series import drifting_share
 from cytodisk.errors import ParameterError
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.run_options import Progress
@@ -129,7 +129,7 @@ class CellWaves:
             "periods": frames / row["period"],
             "edge_length": series.edge_length,
             "surrogates": self.options.surrogates,
-            "drifting": float(np.mean(drifts(values.to_numpy()))),
+            "drifting": drifting_share(values),
             "jitter": velocity_jitter(values) if self.signal in VELOCITIES else math.nan,
             "restarts": int((there["restarted"].fillna("") != "").sum()),
         }

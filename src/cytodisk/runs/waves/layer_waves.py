@@ -72,7 +72,8 @@ class LayerWaves:
         ----------
         values : DataArray of shape (T, S)
         way : ndarray of shape (T, S) and dtype float, optional
-            Length of each sector, in the unit of the study.
+            Length of each sector, in the unit of the study; NaN where it is not known. If there is no frame
+            with all of them, speeds along the edge are NaN.
         progress : callable, optional
             Called with (steps done, in all).
 
@@ -82,7 +83,7 @@ class LayerWaves:
             They are too few, or never change.
         """
         how = dict(self.options.part(WaveSearchParameters))
-        known = way is not None and bool(np.isfinite(way).any())
+        known = way is not None and bool(np.isfinite(way).all(axis=1).any())
         return edge_waves(
             values,
             frame_interval_s=self.step,
@@ -97,14 +98,14 @@ class LayerWaves:
             name: float(found[name])
             for name in ("mode", "period_s", "speed", "direction", "persistence_s", "order", "p")
         }
-        along = float(found["speed_um_s"]) if "speed_um_s" in found else math.nan
+        along = float(found["speed_um_s"])
         seconds = 1.0 if self.scale.frame_interval_s is not None else math.nan
         microns = seconds if self.scale.pixel_size_um is not None else math.nan
         kind = str(found["kind"].item())
         return NO_WAVE | {
             "kind": kind,
             "way": _way(number["direction"]) if kind == "rotating" else "",
-            "mode": int(number["mode"]) if math.isfinite(number["mode"]) else None,
+            "mode": int(number["mode"]),
             "period": number["period_s"] / self.step,
             "period_s": number["period_s"] * seconds,
             "shortest_period": float(found.attrs["shortest_period_s"]) / self.step,

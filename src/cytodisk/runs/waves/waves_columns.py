@@ -31,7 +31,13 @@ WAVE_COLUMNS: Columns = (
         "1/s",
         f"turns around the cell in a second, {_CLOCKWISE}; empty if the frame interval is unknown",
     ),
-    Column("edge_speed", pa.float64(), "velocity", f"speed along the edge, {_CLOCKWISE}"),
+    Column(
+        "edge_speed",
+        pa.float64(),
+        "velocity",
+        f"speed along the edge, {_CLOCKWISE}; empty for mode 0, and for layers of which every frame has an "
+        "empty window",
+    ),
     Column(
         "speed_um_s",
         pa.float64(),

@@ -10,6 +10,11 @@ from cytodisk.errors import ParameterError, StudyError
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.qc_flags.wave_doubts import doubts_of
 from cytodisk.runs.run_options import Progress
+from cytodisk.runs.used_series.chosen_of_study import (
+    check_frames,
+    chosen_cells,
+    refuse_velocity_channel,
+)
 from cytodisk.runs.used_series.progress_phases import percents
 from cytodisk.runs.versions import installed
 from cytodisk.runs.waves.cell_waves import CellWaves, with_whole_numbers
@@ -64,9 +69,14 @@ def waves_study(
         There is no such signal (the message lists those there are), layer or cell, a setting is out of range,
         or waves could be looked for in no cell.
     """
-    chosen = _cells(study, cells)
+    if not study.is_movie:
+        raise StudyError(
+            f"study {study.path} is not that of a movie: without time there are no waves; use cytodisk movie"
+        )
+    chosen = chosen_cells(study, cells)
     options = WavesParameters.chosen(parameters, settings)
     _check_signal(study, signal, options)
+    check_frames(study, options)
     looking = CellWaves(study, signal, options)
     found: dict[str, list[pd.DataFrame]] = {}
     rows = []
@@ -92,21 +102,10 @@ def waves_study(
     return write_waves(study.path, signal, ordered, WAVE_TABLES, content, options.name, csv)
 
 
-def _cells(study: Study, cells: list[int] | None) -> list[int]:
-    if not study.is_movie:
-        raise StudyError(
-            f"study {study.path} is not that of a movie: without time there are no waves; use cytodisk movie"
-        )
-    there = sorted(int(cell) for cell in study.cells["cell"].unique())
-    missing = [cell for cell in cells or [] if cell not in there]
-    if missing:
-        raise ParameterError(
-            f"cells: study {study.path} has no cell {missing[0]}, it has {len(there)} from 0"
-        )
-    return sorted({int(cell) for cell in cells}) if cells else there
-
-
 def _check_signal(study: Study, signal: str, options: WavesParameters) -> None:
+    activity = study.activity(int(study.cells["cell"].iloc[0]))
+    names = [str(name) for name in activity["channel"].to_numpy()] if "mean" in activity else []
+    refuse_velocity_channel(names)
     if signal in VELOCITIES:
         if options.layer:
             raise ParameterError(
@@ -114,8 +113,6 @@ def _check_signal(study: Study, signal: str, options: WavesParameters) -> None:
                 "signal, or leave layer out"
             )
         return
-    activity = study.activity(int(study.cells["cell"].iloc[0]))
-    names = [str(name) for name in activity["channel"].to_numpy()] if "mean" in activity else []
     if signal not in names:
         raise ParameterError(
             f"signal {signal!r} is not in the study: it has {', '.join(map(repr, (*VELOCITIES, *names)))}"

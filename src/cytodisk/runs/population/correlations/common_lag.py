@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from cytodisk.errors import CytodiskError, PopulationError
-from cytodisk.runs.correlate.correlate_study import usual_lag
 from cytodisk.runs.population.opening.found_studies import FoundStudy
 from cytodisk.runs.population.pooling.batch_movies import BatchMovies
+from cytodisk.runs.used_series.chosen_of_study import usual_lag
 from cytodisk.store.study import open_study
 
 

@@ -11,7 +11,7 @@ import pandas as pd
 from cytodisk.errors import ParameterError, PopulationError
 from cytodisk.population.group_columns import CONDITION
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
-from cytodisk.runs.correlate.correlate_study import channels_of, correlate_study
+from cytodisk.runs.correlate.correlate_study import correlate_study
 from cytodisk.runs.population.correlations.batch_correlate_parameters import BatchCorrelateParameters
 from cytodisk.runs.population.correlations.common_lag import common_lag
 from cytodisk.runs.population.correlations.pooled_columns import POOLED_TABLES
@@ -29,6 +29,7 @@ from cytodisk.runs.population.pooling.movie_by_movie import (
 from cytodisk.runs.population.pooling.pool_parameters import PoolOptions, PoolParameters
 from cytodisk.runs.population.pooling.pooled_population import conditions_compared
 from cytodisk.runs.run_options import Progress
+from cytodisk.runs.used_series.chosen_of_study import channels_of
 from cytodisk.store.correlation_store import write_correlation
 from cytodisk.store.populations.pooled_correlation import PooledCorrelation, open_pooled_correlation
 from cytodisk.store.study import open_study
