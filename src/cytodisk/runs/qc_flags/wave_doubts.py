@@ -6,8 +6,8 @@ from typing import Any
 
 from cytodisk.analysis.correlation.jitter_mark import JITTERING_SHARE
 from cytodisk.analysis.correlation.prepared_series import DRIFTING_SHARE
+from cytodisk.analysis.waves.edge_waves import SIGNIFICANT
 from cytodisk.number_words import rounded
-from cytodisk.runs.partial_words import SIGNIFICANT
 
 NEAR_A_LIMIT = 1.15
 """A period so near the shortest or longest that is looked for may be one beyond it."""
@@ -51,7 +51,7 @@ def doubts_of(row: Any) -> list[str]:
     raised = {
         "few periods": row["period"] * NEAR_A_LIMIT > row["longest_period"],
         "few frames a period": row["period"] < row["shortest_period"] * NEAR_A_LIMIT,
-        "waves of the cell's motion": row["p_partial"] >= SIGNIFICANT,
+        "waves of the cell's motion": row["p_partial"] > SIGNIFICANT,
         "drifting waves": slow and row["drifting"] > DRIFTING_SHARE,
         "waves over restarts": row["restarts"] > 0,
         "cell's motion not tested": bool(row["geometry_not_tested"]),
@@ -67,7 +67,7 @@ def has_inside(row: Any) -> bool:
 def _of_inside(row: Any) -> list[str]:
     """Names of the QC flags of a wave that shows in all layers together alone."""
     raised = {
-        "waves of the cell's motion": row["p_inside_partial"] >= SIGNIFICANT,
+        "waves of the cell's motion": row["p_inside_partial"] > SIGNIFICANT,
         "waves over restarts": row["restarts"] > 0,
         "cell's motion not tested": bool(row["geometry_not_tested"]),
     }

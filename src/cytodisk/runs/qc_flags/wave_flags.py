@@ -9,8 +9,8 @@ from typing import Any
 
 import pandas as pd
 
+from cytodisk.analysis.waves.edge_waves import SIGNIFICANT
 from cytodisk.number_words import counted, rounded
-from cytodisk.runs.partial_words import SIGNIFICANT
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag
 from cytodisk.runs.qc_flags.wave_doubts import HIDING, doubts_of
 from cytodisk.store.study import Study
@@ -79,7 +79,7 @@ _SAID: dict[str, _Said] = {
 def _with_and_without(row: Any) -> Iterator[str]:
     """p of the layer's wave, and of that through all layers, with the cell's motion and without."""
     for what, p, left in (("", "p", "p_partial"), ("all layers: ", "p_inside", "p_inside_partial")):
-        if row.get(left, math.nan) >= SIGNIFICANT:
+        if row.get(left, math.nan) > SIGNIFICANT:
             yield f"{what}p = {row[p]:.2g}, without the cell's motion {row[left]:.2g}"
 
 

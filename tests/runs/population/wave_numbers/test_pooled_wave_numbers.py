@@ -55,6 +55,12 @@ def test_waves_are_found_and_their_numbers_are_means_over_experiments_without_si
     assert "period 90 s (95 % interval" in words
 
 
+def test_a_cell_whose_p_is_just_reached_has_a_wave_as_in_its_own_study() -> None:
+    cells, layers = waves_of(0.01, 90.0, np.random.default_rng(0))
+    found = wave_numbers(cells.assign(p=0.05, kind=["rotating", "none"]), layers)
+    assert found.loc[found["channel"] == "wave_period_s", "cell"].tolist() == [0]
+
+
 def test_without_waves_their_speed_does_not_count() -> None:
     found = pooled({"cells": (0.5, 90.0)})
     assert set(found.tables["pooled"]["number"]) == {"wave_order"}

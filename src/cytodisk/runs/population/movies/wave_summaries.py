@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from cytodisk.arrays import BoolArray
 from cytodisk.errors import NoValuesError, PopulationError
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.population.movies.cell_layers import as_windows, reason_of
@@ -18,9 +19,6 @@ from cytodisk.store.study import Study
 
 NUMBERS = "numbers"
 """Name of the attr with numbers that are compared beside the windows."""
-
-LARGEST_P = 0.05
-"""Of a cell whose speed, direction, persistence and period count: without a wave they are any."""
 
 _OF_WAVES = {"period_s": "wave_period_s", "persistence_s": "wave_persistence_s"}
 _SIZES = {"speed_um_s": "wave_speed_um_s", "direction": "wave_direction"}  # which way round is by chance
@@ -89,14 +87,19 @@ def numbers_of(cells: pd.DataFrame) -> pd.DataFrame:
     DataFrame
         wave_order, a normal quantile with a mean of 0 where there is no wave; wave_speed_um_s and
         wave_direction without their sign; wave_period_s and wave_persistence_s. All but the first are NaN
-        where p is 0.05 or more.
+        where the kind of wave is "none": they are then any.
     """
-    p = cells["p"].to_numpy(np.float64)
+    waves = has_wave(cells)
     table: dict[str, Any] = {"wave_order": cells["order"].to_numpy(np.float64)}
     for names, size in ((_SIZES, np.abs), (_OF_WAVES, np.asarray)):
         for column, name in names.items():
-            table[name] = np.where(p < LARGEST_P, size(cells[column].to_numpy(np.float64)), np.nan)
+            table[name] = np.where(waves, size(cells[column].to_numpy(np.float64)), np.nan)
     return pd.DataFrame(table, index=cells.index)
+
+
+def has_wave(cells: pd.DataFrame) -> BoolArray:
+    """Which cells have a wave beyond chance by themselves, of the table of cells of waves."""
+    return np.asarray(cells["kind"].fillna("none") != "none")
 
 
 def _signal(study: Study, channels: Sequence[str] | None) -> str:

@@ -27,7 +27,7 @@ _NUMBER = Column(
     "",
     "wave_order: 0 on average where there are no waves; without their sign wave_speed_um_s and "
     "wave_direction; wave_period_s; wave_persistence_s; the last four of the chosen layer, and only of cells "
-    "with p < 0.05",
+    "that have a wave, with p up to 0.05",
 )
 _UNIT = Column("unit", pa.string(), "", "unit of the number")
 _MEAN = Column("mean", pa.float64(), "", "mean over experiments")

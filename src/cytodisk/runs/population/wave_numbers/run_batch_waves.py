@@ -90,9 +90,10 @@ def run_batch_waves(
     An experiment's number is the mean of its cells', the pooled one the mean of the experiments'. Whether
     cells have waves is tested on their order, a normal quantile whose mean is 0 where there are none; signs
     of whole experiments are turned. Order, speed, direction, period and persistence are compared between
-    conditions, by exchange of the experiments' labels. Speed and direction count without their sign, as which
-    way round a wave runs is mostly by chance; all but the order only of cells with p < 0.05, as without a
-    wave they are any. With n experiments turned signs reach p = 2 / 2ⁿ at best: 6 are needed for 0.05.
+    conditions, by exchange of the experiments' labels. Speed and direction count without their sign, as
+    which way round a wave runs is mostly by chance; all but the order only of cells that have a wave beyond
+    chance (p up to 0.05), as without one they are any. With n experiments turned signs reach p = 2 / 2ⁿ at
+    best: 6 are needed for 0.05.
 
     Examples
     --------

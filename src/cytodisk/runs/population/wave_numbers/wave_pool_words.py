@@ -9,7 +9,7 @@ import pandas as pd
 
 from cytodisk.population.group_columns import CONDITION
 from cytodisk.population.significance import LEVEL
-from cytodisk.runs.population.movies.wave_summaries import LARGEST_P
+from cytodisk.runs.population.movies.wave_summaries import has_wave
 from cytodisk.runs.population.pooling.number_words import cells_words, digits, significant, with_interval
 
 NAMES = {
@@ -63,7 +63,7 @@ def _of_condition(rows: pd.DataFrame, cells: pd.DataFrame) -> Iterator[str]:
         what = "There are waves beyond chance" if is_wave else "There are no waves beyond chance"
         verdict = f"{what} ({chance}, p = {order['p_fwer']:.2g}{over})."
     yield verdict
-    having = cells[cells["p"] < LARGEST_P]
+    having = cells[has_wave(cells)]
     kinds = ", ".join(f"{count} {kind}" for kind, count in having["kind"].value_counts().items())
     yield f"{len(having)} of {len(cells)} cells have one by themselves{f': {kinds}' if kinds else ''}."
     told = [_number(rows, name) for name in _TOLD]
