@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import cytodisk as cd
 from cytodisk.windows.on_cell import WindowsOnCell
-from cytodisk.windows.subpixels import depths_and_angles, subpixel_places
+from cytodisk.windows.pixel_shares.subpixels import depths_and_angles, subpixel_places
 
 SHARES = (0.5, 0.05, 0.95)
 RADIUS = 40

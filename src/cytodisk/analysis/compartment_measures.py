@@ -9,8 +9,8 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from cytodisk.windows.on_cell import WindowsOnCell
+from cytodisk.windows.pixel_shares.shares import strips
 from cytodisk.windows.rings.nucleus_edges import NucleusEdges
-from cytodisk.windows.shares import strips
 
 _FIVE = 5
 

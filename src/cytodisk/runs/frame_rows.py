@@ -17,7 +17,7 @@ from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
 from cytodisk.images.signal_files import SignalPiece
 from cytodisk.runs.compartment_row import place_row, signal_row
 from cytodisk.windows.depths import DEPTHS, NUCLEUS_DISTANCES
-from cytodisk.windows.hole_pixels import hole_pixels
+from cytodisk.windows.pixel_shares.hole_pixels import hole_pixels
 from cytodisk.windows.polar_windows import CellWindows
 from cytodisk.windows.sample import check_channel_names
 from cytodisk.windows.window_sizes import window_sizes

@@ -12,9 +12,9 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import Scale
 from cytodisk.windows.on_cell import WindowsOnCell
+from cytodisk.windows.pixel_shares.shares import NOWHERE, PER_SIDE
+from cytodisk.windows.pixel_shares.subpixels import subpixel_places
 from cytodisk.windows.polar_windows import PolarGrid
-from cytodisk.windows.shares import NOWHERE, PER_SIDE
-from cytodisk.windows.subpixels import subpixel_places
 
 
 @dataclass(frozen=True, eq=False)

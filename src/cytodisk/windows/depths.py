@@ -8,7 +8,7 @@ from numba import njit
 
 from cytodisk.arrays import BoolArray, FloatArray, Int32Array, IntArray
 from cytodisk.geometry.edge_distance import MOST_AROUND, Edge, EdgeDistance, depth_below, edges_around
-from cytodisk.windows.shares import DIVIDED, FINE, NOWHERE, PER_SIDE, Subpixels
+from cytodisk.windows.pixel_shares.shares import DIVIDED, FINE, NOWHERE, PER_SIDE, Subpixels
 
 DEPTHS = ("depth", "depth_p5", "depth_p95")
 """Names of the percentiles of a window's depth, in their order."""

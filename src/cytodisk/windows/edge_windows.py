@@ -20,8 +20,8 @@ from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.taking import takes
 from cytodisk.windows.grid_parameters import EdgeGridParameters, EdgeWindowParameters
 from cytodisk.windows.on_cell import WindowsOnCell
-from cytodisk.windows.shares import PER_SIDE, strips
-from cytodisk.windows.subpixels import depths_and_angles, subpixel_places
+from cytodisk.windows.pixel_shares.shares import PER_SIDE, strips
+from cytodisk.windows.pixel_shares.subpixels import depths_and_angles, subpixel_places
 
 _ROUGH = 2.0  # pixels by which depths from the distance transform are off, at most
 

@@ -14,9 +14,9 @@ from cytodisk.geometry.edge_distance import EdgeDistance
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.windows.depths import DEPTHS, NUCLEUS_DISTANCES, window_depths
-from cytodisk.windows.hole_pixels import hole_pixels, without_pixels
 from cytodisk.windows.pieces import pieces_by_window
-from cytodisk.windows.shares import (
+from cytodisk.windows.pixel_shares.hole_pixels import hole_pixels, without_pixels
+from cytodisk.windows.pixel_shares.shares import (
     NOWHERE,
     PER_SIDE,
     WindowShares,

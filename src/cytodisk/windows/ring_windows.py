@@ -17,8 +17,8 @@ from cytodisk.taking import takes
 from cytodisk.windows.edge_windows import CellEdge
 from cytodisk.windows.grid_parameters import CountParameters, RingWindowParameters
 from cytodisk.windows.on_cell import WindowsOnCell
-from cytodisk.windows.shares import PER_SIDE
-from cytodisk.windows.subpixels import subpixel_places
+from cytodisk.windows.pixel_shares.shares import PER_SIDE
+from cytodisk.windows.pixel_shares.subpixels import subpixel_places
 
 
 @dataclass(frozen=True)

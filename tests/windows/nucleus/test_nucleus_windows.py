@@ -11,9 +11,9 @@ from scipy.spatial import cKDTree
 import cytodisk as cd
 from cytodisk.geometry.polygon import signed_area
 from cytodisk.windows.nucleus.nucleus_raster import paint_nucleus_windows
-from cytodisk.windows.shares import DIVIDED, Subpixels
-from cytodisk.windows.subpixels import subpixel_places
-from cytodisk.windows.weights import windows_of_subpixels
+from cytodisk.windows.pixel_shares.shares import DIVIDED, Subpixels
+from cytodisk.windows.pixel_shares.subpixels import subpixel_places
+from cytodisk.windows.pixel_shares.weights import windows_of_subpixels
 
 SPACINGS = ("area", "radius")
 CELL, NUCLEUS = 40, 16  # radii in px of the concentric pair

@@ -24,7 +24,7 @@ from cytodisk.runs.frame_rows import FramePlace
 from cytodisk.store.study_folder import part_key
 from cytodisk.store.study_kind import MAPS
 from cytodisk.windows.on_cell import WindowsOnCell
-from cytodisk.windows.shares import PER_SIDE
+from cytodisk.windows.pixel_shares.shares import PER_SIDE
 
 _SMALL_PX = 4000  # cells up to here are drawn by parts of pixels
 

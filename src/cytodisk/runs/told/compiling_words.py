@@ -6,7 +6,7 @@ _OF_NUCLEI, _OF_EDGES = "cytodisk.windows.nucleus.nucleus_raster", "cytodisk.mot
 # For each kind of work modules whose kernels are compiled late in it.
 LATE = {
     "shapes": ("cytodisk.disk.blocks",),
-    "map": ("cytodisk.windows.raster",),
+    "map": ("cytodisk.windows.pixel_shares.raster",),
     "map with nuclei": (_OF_NUCLEI,),
     "movie": (_OF_EDGES,),
     "movie with nuclei": (_OF_NUCLEI, _OF_EDGES),

@@ -13,9 +13,9 @@ import numpy as np
 
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.nucleus.cone import to_polygon
+from cytodisk.windows.pixel_shares.raster import RoundGrid
+from cytodisk.windows.pixel_shares.window_walls import layer_bands
 from cytodisk.windows.polar_layout import PolarLayout
-from cytodisk.windows.raster import RoundGrid
-from cytodisk.windows.window_walls import layer_bands
 
 
 class ChartGrid(NamedTuple):

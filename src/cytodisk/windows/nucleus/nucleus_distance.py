@@ -7,9 +7,9 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.geometry.edge_distance import EdgeDistance
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.windows.depths import NUCLEUS_DISTANCES, window_depths
-from cytodisk.windows.hole_pixels import without_pixels
 from cytodisk.windows.nucleus.compartment_rule import nuclear_box, nucleus_of
-from cytodisk.windows.shares import Subpixels
+from cytodisk.windows.pixel_shares.hole_pixels import without_pixels
+from cytodisk.windows.pixel_shares.shares import Subpixels
 
 
 def nucleus_distances(disk: DiskMap, subpixels: Subpixels, n_windows: int) -> FloatArray:

@@ -8,8 +8,7 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.windows.nucleus.chart_grid import ChartGrid, chart_grid
 from cytodisk.windows.nucleus.compartment_rule import nuclear_box, nucleus_of, windows_at_border
 from cytodisk.windows.nucleus.ring_triangles import paint_ring_triangle
-from cytodisk.windows.polar_layout import PolarLayout
-from cytodisk.windows.raster import (
+from cytodisk.windows.pixel_shares.raster import (
     by_strip,
     collect,
     corners_of,
@@ -19,7 +18,8 @@ from cytodisk.windows.raster import (
     subpixel_points,
     undivided_where_alike,
 )
-from cytodisk.windows.shares import NOWHERE, PER_SIDE, Subpixels
+from cytodisk.windows.pixel_shares.shares import NOWHERE, PER_SIDE, Subpixels
+from cytodisk.windows.polar_layout import PolarLayout
 
 _BEYOND = -3  # for a window: on the other side of the nuclear outline than the pixel
 

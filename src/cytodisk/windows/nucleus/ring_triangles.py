@@ -5,8 +5,15 @@ import math
 from numba import njit
 
 from cytodisk.arrays import FloatArray, Int32Array
-from cytodisk.windows.raster import fill
-from cytodisk.windows.triangle_rows import ON_EDGE, Corners, columns_of, from_top, sides_of, slopes_of
+from cytodisk.windows.pixel_shares.raster import fill
+from cytodisk.windows.pixel_shares.triangle_rows import (
+    ON_EDGE,
+    Corners,
+    columns_of,
+    from_top,
+    sides_of,
+    slopes_of,
+)
 
 
 @njit(cache=True, error_model="numpy")

@@ -10,6 +10,7 @@ import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.taking import takes
+from cytodisk.windows.pixel_shares.shares import PER_SIDE
 from cytodisk.windows.rings.around_nucleus import WindowsAroundNucleus
 from cytodisk.windows.rings.nucleus_edges import NucleusEdges
 from cytodisk.windows.rings.nucleus_ring_grid import InterpolatedRingGrid
@@ -22,7 +23,6 @@ from cytodisk.windows.rings.ring_points import (
     turned_over,
     window_of_triangles,
 )
-from cytodisk.windows.shares import PER_SIDE
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,8 +16,8 @@ from cytodisk.geometry.mask import FilledMask
 from cytodisk.geometry.mask_parameters import Holes
 from cytodisk.geometry.nucleus_mask import fit_nucleus
 from cytodisk.windows.edge_windows import CellEdge
-from cytodisk.windows.shares import PER_SIDE
-from cytodisk.windows.subpixels import distances_and_angles, subpixel_places
+from cytodisk.windows.pixel_shares.shares import PER_SIDE
+from cytodisk.windows.pixel_shares.subpixels import distances_and_angles, subpixel_places
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -10,13 +10,13 @@ import numpy as np
 
 from cytodisk.arrays import IntArray
 from cytodisk.taking import takes
+from cytodisk.windows.pixel_shares.shares import PER_SIDE
+from cytodisk.windows.pixel_shares.subpixels import subpixel_places
 from cytodisk.windows.ring_windows import RingGrid, RingWindows
 from cytodisk.windows.rings.around_nucleus import WindowsAroundNucleus
 from cytodisk.windows.rings.nucleus_edges import NucleusEdges
 from cytodisk.windows.rings.nucleus_ring_grid import NucleusRingGrid
 from cytodisk.windows.rings.nucleus_ring_parameters import NucleusRingWindowParameters
-from cytodisk.windows.shares import PER_SIDE
-from cytodisk.windows.subpixels import subpixel_places
 
 
 @dataclass(frozen=True, eq=False)

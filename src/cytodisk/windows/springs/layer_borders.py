@@ -10,7 +10,7 @@ import shapely
 
 from cytodisk.arrays import FloatArray
 from cytodisk.geometry.polygon import edge_lengths, signed_area
-from cytodisk.windows.subpixels import distances_and_angles
+from cytodisk.windows.pixel_shares.subpixels import distances_and_angles
 
 _STEP_PX = 0.5  # between points of a border, at most
 _QUARTER = 16  # points of a quarter of a circle

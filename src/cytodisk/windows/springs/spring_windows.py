@@ -12,7 +12,8 @@ from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.taking import takes
 from cytodisk.windows.edge_windows import CellEdge, EdgeGrid, EdgeWindows
-from cytodisk.windows.shares import PER_SIDE
+from cytodisk.windows.pixel_shares.shares import PER_SIDE
+from cytodisk.windows.pixel_shares.subpixels import subpixel_places
 from cytodisk.windows.springs.layer_borders import Border
 from cytodisk.windows.springs.spring_parameters import (
     EVENNESS,
@@ -20,7 +21,6 @@ from cytodisk.windows.springs.spring_parameters import (
     SpringWindowParameters,
 )
 from cytodisk.windows.springs.spring_sides import CrossedBorder, Sides, cross_borders
-from cytodisk.windows.subpixels import subpixel_places
 
 
 @dataclass(frozen=True)

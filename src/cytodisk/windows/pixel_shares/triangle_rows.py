@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 from numba import njit
 
-from cytodisk.windows.window_walls import Point
+from cytodisk.windows.pixel_shares.window_walls import Point
 
 ON_EDGE = 1e-9  # of a subpixel: a point so far beyond a triangle's edge is still on it
 

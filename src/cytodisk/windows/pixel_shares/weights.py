@@ -5,12 +5,11 @@ from scipy.spatial import cKDTree
 
 from cytodisk.arrays import BoolArray, FloatArray, Int32Array, IntArray
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.windows.hole_pixels import hole_pixels, pixels_beside, without_pixels
 from cytodisk.windows.nucleus.compartment_rule import compartment_windows, is_nuclear, nuclear_box
 from cytodisk.windows.nucleus.nucleus_raster import paint_nucleus_windows
-from cytodisk.windows.polar_layout import PolarLayout
-from cytodisk.windows.raster import paint_windows
-from cytodisk.windows.shares import (
+from cytodisk.windows.pixel_shares.hole_pixels import hole_pixels, pixels_beside, without_pixels
+from cytodisk.windows.pixel_shares.raster import paint_windows
+from cytodisk.windows.pixel_shares.shares import (
     FINE,
     PER_SIDE,
     PIXELS_AT_ONCE,
@@ -19,7 +18,8 @@ from cytodisk.windows.shares import (
     gather_shares,
     subpixels_by_strips,
 )
-from cytodisk.windows.subpixels import subpixel_places
+from cytodisk.windows.pixel_shares.subpixels import subpixel_places
+from cytodisk.windows.polar_layout import PolarLayout
 
 
 def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:

@@ -13,10 +13,16 @@ from numba import njit
 
 from cytodisk.arrays import BoolArray, FloatArray, Int32Array, IntArray
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.windows.polar_layout import PolarLayout
-from cytodisk.windows.shares import DIVIDED, NOWHERE, PER_SIDE, Subpixels, with_starts
-from cytodisk.windows.triangle_rows import ON_EDGE, Corners, columns_of, from_top, sides_of, slopes_of
-from cytodisk.windows.window_walls import (
+from cytodisk.windows.pixel_shares.shares import DIVIDED, NOWHERE, PER_SIDE, Subpixels, with_starts
+from cytodisk.windows.pixel_shares.triangle_rows import (
+    ON_EDGE,
+    Corners,
+    columns_of,
+    from_top,
+    sides_of,
+    slopes_of,
+)
+from cytodisk.windows.pixel_shares.window_walls import (
     Point,
     Walls,
     Window,
@@ -27,6 +33,7 @@ from cytodisk.windows.window_walls import (
     walls_of,
     window_near,
 )
+from cytodisk.windows.polar_layout import PolarLayout
 
 _BEFORE_WALL = 1e-6  # of a subpixel: so far before a wall a stretch ends; its next subpixel is looked at
 _LOOKED_AT = 3  # subpixels, before it is computed where a stretch ends

@@ -7,7 +7,7 @@ from scipy import ndimage
 
 from cytodisk.arrays import BoolArray, FloatArray, Int32Array, IntArray
 from cytodisk.geometry.placed_mask import PlacedMask
-from cytodisk.windows.shares import NOWHERE, Subpixels
+from cytodisk.windows.pixel_shares.shares import NOWHERE, Subpixels
 
 _EIGHT = np.ones((3, 3), dtype=bool)
 

@@ -1,0 +1,1 @@
+"""How the pixels of a cell are shared among its windows."""
