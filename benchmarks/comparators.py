@@ -131,7 +131,7 @@ def tension_rows(found: list[tuple[SimulatedMovie, DiskMovie]]) -> Iterator[tupl
     own = [kept(truth, lay_frames("edge", movie, grid)) for (truth, movie), grid in of]
     yield "cytodisk's tracking", np.mean(own, axis=0).tolist()
     for value in LINE_TENSION:
-        rows = [kept(truth, spring_frames(movie, grid, value)) for (truth, movie), grid in of]
+        rows = [kept(truth, spring_frames(movie, grid, line_tension=value)) for (truth, movie), grid in of]
         yield f"line tension {value:g}", np.mean(rows, axis=0).tolist()
 
 

@@ -74,7 +74,7 @@ FRAME_STAGES = (
     Stage("tracking", "matching and the rest", ("cytodisk.motion.tracking:follow",)),
     Stage("tracking", "angles", ("cytodisk.motion.temporal:tracked_angles",)),
     Stage("windows", "where parts of pixels lie", ("cytodisk.disk.disk_map:DiskMap.to_disk",)),
-    Stage("windows", "weights", ("cytodisk.windows.pixel_shares.weights:window_shares",)),
+    Stage("windows", "weights", ("cytodisk.windows.weights:window_shares",)),
     Stage("sampling", "two channels", ("cytodisk.windows.sample:sampled_pixels",)),
     Stage("sampling", "depth of windows", ("cytodisk.windows.depths:window_depths",)),
     Stage("sampling", "size of windows", ("cytodisk.windows.window_sizes:window_sizes",)),

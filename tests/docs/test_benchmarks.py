@@ -1,5 +1,6 @@
 """What the benchmarks say follows from their numbers, and what they time is there."""
 
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -28,6 +29,18 @@ def load() -> Iterator[Any]:
         yield __import__
     finally:
         sys.path.remove(str(ROOT / "benchmarks"))
+
+
+def test_benchmarks_that_are_named_exist() -> None:
+    folders = [(ROOT / "src", "*.py"), (ROOT / "docs", "*.py"), (ROOT / "docs" / "source", "*.rst")]
+    pages = [page for folder, names in folders for page in folder.rglob(names)]
+    named = {
+        (name, page.name)
+        for page in [*pages, ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md"]
+        for name in re.findall(r"\bbenchmarks/\w+\.py", page.read_text(encoding="utf-8"))
+    }
+    assert len(named) > 20
+    assert [one for one in sorted(named) if not (ROOT / one[0]).exists()] == []
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,8 @@ from cytodisk.parameters import Parameters, parameter
 _MOST_STEPS = 10_000
 
 
-class DemonsParameters(Parameters):
-    """Parameters of the tracker "demons"; the paper gives the step and the number of steps of the snake."""
+class DemonsFieldParameters(Parameters):
+    """Parameters of a demons registration of two masks."""
 
     iterations: int = parameter(
         100, "Number of iterations of the demons registration.", least=0, most=_MOST_STEPS
@@ -18,6 +18,11 @@ class DemonsParameters(Parameters):
         most=1000,
         unit="px",
     )
+
+
+class DemonsParameters(DemonsFieldParameters):
+    """Parameters of the tracker "demons"; the paper gives the step and the number of steps of the snake."""
+
     snake_step: float = parameter(1.0, "Longest step of the snake.", above=0, most=1000, unit="px")
     snake_iterations: int = parameter(100, "Number of steps of the snake.", least=0, most=_MOST_STEPS)
     gvf_mu: float = parameter(

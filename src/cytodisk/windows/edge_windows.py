@@ -270,12 +270,12 @@ def edge_windows(cell: Any, *in_order: Any, **settings: Any) -> EdgeWindows:
     See Also
     --------
     polar_windows : Windows of equal area by the map onto the disk.
+    spring_windows : Sides are springs, which make windows more regular, as u-Register's are.
     ring_windows : Rings and wedges, as CellProfiler's.
 
     Notes
     -----
-    u-Register also moves the sides of windows like springs to make them more regular; here they are where
-    the nearest edge point changes.
+    Sides of windows are where the nearest edge point changes.
 
     References
     ----------

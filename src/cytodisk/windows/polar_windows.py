@@ -22,8 +22,8 @@ from cytodisk.windows.nucleus.nucleus_grid import with_nucleus_of
 from cytodisk.windows.on_map import WindowsOnMap
 from cytodisk.windows.outlines import window_polygon, window_polygons
 from cytodisk.windows.pixel_shares.shares import PER_SIDE, WindowShares
-from cytodisk.windows.pixel_shares.weights import window_shares, windows_of_subpixels
 from cytodisk.windows.polar_layout import PolarLayout
+from cytodisk.windows.weights import window_shares, windows_of_subpixels
 from cytodisk.windows.window_features import window_features
 
 

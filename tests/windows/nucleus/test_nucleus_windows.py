@@ -13,7 +13,7 @@ from cytodisk.geometry.polygon import signed_area
 from cytodisk.windows.nucleus.nucleus_raster import paint_nucleus_windows
 from cytodisk.windows.pixel_shares.shares import DIVIDED, Subpixels
 from cytodisk.windows.pixel_shares.subpixels import subpixel_places
-from cytodisk.windows.pixel_shares.weights import windows_of_subpixels
+from cytodisk.windows.weights import windows_of_subpixels
 
 SPACINGS = ("area", "radius")
 CELL, NUCLEUS = 40, 16  # radii in px of the concentric pair

@@ -7,7 +7,7 @@ from cytodisk import map_to_disk, polar_windows, simulate
 from cytodisk.windows.pixel_shares.raster import paint_windows
 from cytodisk.windows.pixel_shares.shares import DIVIDED, Subpixels
 from cytodisk.windows.pixel_shares.subpixels import subpixel_places
-from cytodisk.windows.pixel_shares.weights import windows_of_subpixels
+from cytodisk.windows.weights import windows_of_subpixels
 
 
 def all_subpixels(subpixels: Subpixels) -> np.ndarray:

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import cytodisk as cd
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.windows.pixel_shares.shares import DIVIDED, NOWHERE, Subpixels, gather_shares, with_starts
-from cytodisk.windows.pixel_shares.weights import windows_of_subpixels
+from cytodisk.windows.weights import windows_of_subpixels
 
 WINDOWS = 7
 

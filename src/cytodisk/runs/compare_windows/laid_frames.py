@@ -10,13 +10,15 @@ import numpy as np
 from cytodisk.analysis.activity import Grid
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.motion.disk_movie import DiskMovie
+from cytodisk.motion.nonrigid.nonrigid_parameters import NonrigidParameters
 from cytodisk.motion.nonrigid.reference_field import fields_to_reference
+from cytodisk.taking import takes
 from cytodisk.windows.carried_windows import CarriedWindows
 from cytodisk.windows.edge_windows import CellEdge
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.polar_windows import PolarGrid
 from cytodisk.windows.springs.edge_beads import EdgeBeads
-from cytodisk.windows.springs.spring_parameters import LINE_TENSION
+from cytodisk.windows.springs.spring_parameters import LineTensionParameters
 from cytodisk.windows.springs.spring_windows import SpringGrid, SpringWindows
 
 
@@ -64,9 +66,8 @@ def lay_frames(method: str, movie: DiskMovie, grid: Grid) -> Iterator[LaidFrame]
             yield LaidFrame(frame, disk, grid.on(disk))
 
 
-def spring_frames(
-    movie: DiskMovie, grid: SpringGrid, line_tension: float = LINE_TENSION
-) -> Iterator[LaidFrame]:
+@takes(LineTensionParameters)
+def spring_frames(movie: DiskMovie, grid: SpringGrid, **settings: float) -> Iterator[LaidFrame]:
     """Windows with springs, on an edge that is followed by line tension of its own.
 
     Parameters
@@ -74,13 +75,14 @@ def spring_frames(
     movie : DiskMovie
         Its outlines and their rigid motion are used, its tracked points are not.
     grid : SpringGrid
-    line_tension : float
-        As in `LineTensionParameters`.
+    **settings
+        See `LineTensionParameters`.
 
     Yields
     ------
     LaidFrame
     """
+    line_tension = LineTensionParameters.of(**settings).line_tension
     beads: EdgeBeads | None = None
     for frame, record in enumerate(movie.records):
         if record.boundary is None:
@@ -95,6 +97,7 @@ def spring_frames(
         yield LaidFrame(frame, disk, SpringWindows(grid, edge))
 
 
+@takes(NonrigidParameters)
 def registered_frames(movie: DiskMovie, grid: PolarGrid, **settings: float) -> Iterator[LaidFrame]:
     """Windows of the first frame, carried to each other one by a registration of the masks.
 

@@ -5,7 +5,6 @@ from cytodisk.parameters import Parameters, parameter
 from cytodisk.windows.grid_parameters import EdgeGridParameters
 
 EVENNESS = 4.0
-LINE_TENSION = 0.5
 
 
 class EvennessParameters(Parameters):
@@ -33,7 +32,7 @@ class LineTensionParameters(Parameters):
     """How the edge is followed from frame to frame by springs along it."""
 
     line_tension: float = parameter(
-        LINE_TENSION,
+        0.5,
         "Over how many neighbouring sectors springs along the edge even out their lengths in each step; 0: "
         "points go to the nearest edge of the next frame.",
         least=0,
