@@ -40,6 +40,7 @@ def gains(tmp_path_factory: pytest.TempPathFactory) -> PooledPrediction:
                 rows.append((row.input, 0, source, target, layer, score, 0.01 * score))
     links = pd.DataFrame(rows, columns=["input", "cell", "source", "target", "layer", "score", "gain_excess"])
     links = links.assign(gain_excess_partial=np.nan, score_partial=np.nan)
+    links = links.assign(gain=links["gain_excess"] + 0.01, gain_reversed=0.0)
     tables = {"cells": cells} | pool_gains(links, cells, PoolParameters(permutations=99)).tables
     columns = POOLED_PREDICTION_TABLES
     ordered = {name: in_order(table, columns[name]) for name, table in tables.items()}
@@ -67,6 +68,19 @@ def test_each_link_has_a_panel_and_dots_only_where_the_source_predicts(gains: Po
     assert ("Rac1 → velocity", [2.5]) in dots  # layer 0 lies on the right
     assert sheet.figure.get_figwidth() * 25.4 == pytest.approx(SINGLE_COLUMN_MM)
     assert SINGLE_COLUMN_MM < WIDE_MM
+
+
+def test_dots_of_what_may_be_noise_are_hollow(
+    gains: PooledPrediction, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def styles() -> list[str]:
+        lines = [line for ax in gain_page(gains).figure.axes for line in ax.lines]
+        return [str(line.get_fillstyle()) for line in lines if line.get_gid() == "beyond chance"]
+
+    assert styles() == ["full"]
+    weaker = gains.pooled.assign(weaker=gains.pooled["source"] == "Rac1")
+    monkeypatch.setitem(gains.__dict__, "pooled", weaker)
+    assert styles() == ["none"]
 
 
 def test_numbers_of_waves_have_a_panel_where_a_cell_has_a_wave(tmp_path: Path) -> None:

@@ -84,7 +84,8 @@ def gain_page(pooled: PooledPrediction) -> Sheet:
     -------
     Sheet
         Two panels abreast on 85 mm, three on 119 mm where there are more than four links. Dots at the top
-        mark layers in which the source predicts the target.
+        mark layers in which the source predicts the target, hollow ones those in which noise of measurement
+        alone may make it seem so.
     """
     links = shown_links(pooled.pooled)
     columns = 2 if len(links) <= 4 else 3
@@ -164,11 +165,22 @@ def _draw_beyond(ax: Axes, pooled: PooledPrediction, link: tuple[str, str]) -> N
     low, high = ax.get_ylim()
     for row, (name, colour) in enumerate(condition_colours(list(pooled.conditions)).items()):
         own = raw[(raw["condition"] == name) & predicts(raw)]
-        if len(own):
-            height = high - (0.04 + _DOT_STEP * row) * (high - low)
-            x = own["layer"].map(place).to_numpy()
-            (dots,) = ax.plot(x, np.full(len(own), height), ".", color=colour, markersize=4.5)
+        height = high - (0.04 + _DOT_STEP * row) * (high - low)
+        for weaker, some in own.groupby("weaker"):
+            x = some["layer"].map(place).to_numpy()
+            (dots,) = ax.plot(x, np.full(len(some), height), color=colour, **_dot_look(bool(weaker)))
             dots.set(gid=_BEYOND, zorder=4.0)
+
+
+def _dot_look(weaker: bool) -> dict[str, Any]:
+    """Dots of layers beyond chance; hollow where noise of measurement alone may make them."""
+    return {
+        "marker": "o",
+        "markersize": 2.2,
+        "markeredgewidth": 0.6,
+        "linewidth": 0,
+        "fillstyle": "none" if weaker else "full",
+    }
 
 
 def _of(table: pd.DataFrame, link: tuple[str, str]) -> pd.DataFrame:
@@ -197,8 +209,8 @@ def _key(pooled: PooledPrediction) -> list[Any]:
     raw = pooled.pooled[pooled.pooled["kind"] == "raw"]
     if len(raw) < len(pooled.pooled):
         handles.append(Line2D([], [], color=LINE_COLOUR, label="without geometry", **PARTIAL_LOOK))
-    if predicts(raw).any():
-        words = f"beyond chance (p ≤ {LEVEL:g})"
-        look: Any = {"marker": ".", "markersize": 4.5, "linewidth": 0}
-        handles.append(Line2D([], [], color=LINE_COLOUR, label=words, **look))
+    words = {False: f"beyond chance (p ≤ {LEVEL:g})", True: "the same, but may be noise"}
+    for weaker in sorted(raw.loc[predicts(raw), "weaker"].unique()):
+        look = _dot_look(bool(weaker))
+        handles.append(Line2D([], [], color=LINE_COLOUR, label=words[bool(weaker)], **look))
     return handles

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -165,16 +165,29 @@ def links_table(rows: pd.DataFrame) -> pd.DataFrame:
         name: table[name].to_numpy(dtype=np.float64) for name in table if table[name].dtype.kind == "f"
     }
     table["geometry"] = does_not_survive(columns)
-    table["weaker"] = (table["q"] < SIGNIFICANT).to_numpy() & _weaker(table)
+    table["weaker"] = (table["q"] < SIGNIFICANT).to_numpy() & weaker_links(table)
     for name in _WHOLE:
         table[name] = table[name].round().astype("Int64")
     known = [column.name for column in LINKS if column.name in table]
     return table[known]
 
 
-def _weaker(table: pd.DataFrame) -> BoolArray:
-    """Rows that noise of measurement alone would make, by what the other direction has in the same layer."""
-    keys, gains = ["source", "target", "layer"], ["gain", "gain_reversed"]
+def weaker_links(table: pd.DataFrame, within: Sequence[str] = ()) -> BoolArray:
+    """Rows that noise of measurement alone would make, by what the other direction has in the same layer.
+
+    Parameters
+    ----------
+    table : DataFrame
+        source, target, layer, gain and gain_reversed; each link and layer once.
+    within : sequence of str
+        Columns in which both directions must be alike, too.
+
+    Returns
+    -------
+    ndarray of dtype bool
+        See `weaker_direction`.
+    """
+    keys, gains = ["source", "target", "layer", *within], ["gain", "gain_reversed"]
     back = table[[*keys, *gains]].rename(columns={"source": "target", "target": "source"})
     both = table[[*keys, *gains]].merge(back, "left", keys, suffixes=("", "_back"))
     return weaker_direction(

@@ -11,8 +11,13 @@ from cytodisk.runs.population.predictions.pooled_gains import pool_gains
 LINKS = (("Rac1", "velocity"), ("velocity", "Rac1"))
 
 
-def pooled(strength: dict[str, float], experiments: int = 6, compare: tuple[str, ...] = ()) -> Pooled:
-    """Cells in which the past of Rac1 predicts velocity in layer 0, half of which geometry takes away."""
+def pooled(
+    strength: dict[str, float], experiments: int = 6, compare: tuple[str, ...] = (), noise: float = 0.0
+) -> Pooled:
+    """Cells in which the past of Rac1 predicts velocity in layer 0, half of which geometry takes away.
+
+    Backwards it gains as much on reversed time as `noise`.
+    """
     rng = np.random.default_rng(3)
     rows, cells = [], []
     for condition, size in strength.items():
@@ -22,8 +27,11 @@ def pooled(strength: dict[str, float], experiments: int = 6, compare: tuple[str,
                 cells.append(place | {"condition": condition, "experiment": f"{condition} {experiment}"})
                 for source, target in LINKS:
                     for layer in range(2):
-                        score = size * (layer == 0) * (source == "Rac1") + rng.normal()
+                        mean = size * (layer == 0) * (source == "Rac1" or noise > 0)
+                        score = mean + rng.normal()
                         row = place | {"source": source, "target": target, "layer": layer, "score": score}
+                        reversed_ = 0.0 if source == "Rac1" else noise
+                        row |= {"gain": 0.01 * score + 0.02, "gain_reversed": reversed_}
                         row |= {"gain_excess": 0.01 * score, "gain_excess_partial": 0.005 * score}
                         rows.append(row | {"score_partial": 0.1 * score + 0.5 * rng.normal()})
     return pool_gains(pd.DataFrame(rows), pd.DataFrame(cells), PoolParameters(compare=compare))
@@ -44,6 +52,17 @@ def test_a_link_is_found_in_its_direction_and_layer_and_the_sentence_has_its_num
     assert "it does not survive" in first
     assert "The past of the edge's velocity does not predict Rac1 beyond chance" in first
     assert found.sentences[-1] == "cells against 0: 6 experiments can give p = 0.031 at best."
+
+
+def test_a_direction_that_noise_alone_may_make_is_said_and_is_no_finding() -> None:
+    found = pooled({"cells": 4.0}, noise=0.2)
+    raw = found.tables["pooled"].query("kind == 'raw' and layer == 0").set_index("source")
+    assert predicts(raw).all()
+    assert raw["weaker"].to_dict() == {"Rac1": False, "velocity": True}
+    assert not found.tables["pooled"].query("kind == 'partial'")["weaker"].any()
+    there, back = found.sentences[0].split("The past of the edge's velocity predicts Rac1")
+    assert "noise of measurement" not in there
+    assert "but it is the weaker of both directions, and noise of measurement alone may make it" in back
 
 
 def test_scores_below_0_predict_nothing() -> None:

@@ -11,7 +11,9 @@ import pandas as pd
 from cytodisk.population.group_columns import CONDITION
 from cytodisk.population.significance import LEVEL
 from cytodisk.runs.channel_names import VELOCITIES
+from cytodisk.runs.findings.doubt_words import doubt_words
 from cytodisk.runs.population.pooling.number_words import digits
+from cytodisk.runs.predict.prediction_verdict import WEAKER
 
 _LINK = ["source", "target"]
 _MOST_LINKS = 4  # that are told one by one
@@ -116,8 +118,12 @@ def _predicted(row: Any) -> str:
     less = 100.0 * -np.expm1(-row["gain_excess"])
     return (
         f"The past of {source} predicts {target}, most in layer {row['layer']}: {less:.2g} % less error, "
-        f"{_size(row)}, p = {row['p_fwer']:.2g} over all links and layers."
+        f"{_size(row)}, p = {row['p_fwer']:.2g} over all links and layers{_but(row)}."
     )
+
+
+def _but(row: Any) -> str:
+    return f", but {doubt_words([WEAKER])}: so it is no finding" if row["weaker"] else ""
 
 
 def _not_predicted(row: Any) -> str:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import pandas as pd
 
+from cytodisk.population.group_columns import CONDITION, EXPERIMENT
 from cytodisk.runs.population.movies.prediction_summaries import with_link_names
-from cytodisk.runs.population.pooling.number_population import number_population
+from cytodisk.runs.population.pooling.number_population import KEYS, number_population
 from cytodisk.runs.population.pooling.pool_parameters import PoolParameters
 from cytodisk.runs.population.pooling.pooled_population import TABLES, Pool, Pooled
 from cytodisk.runs.population.predictions.gain_words import difference_sentences, link_sentences
+from cytodisk.runs.predict.tested_link import weaker_links
 
 GAINS = {"raw": "gain_excess", "partial": "gain_excess_partial"}
 """Kinds of gain, and their column: as measured, and with what geometry alone would give regressed out."""
@@ -26,7 +28,7 @@ def pool_gains(links: pd.DataFrame, cells: pd.DataFrame, options: PoolParameters
     Parameters
     ----------
     links : DataFrame
-        input, cell, source, target, layer and the columns of `GAINS` and `SCORES`.
+        input, cell, source, target, layer, gain, gain_reversed and the columns of `GAINS` and `SCORES`.
     cells : DataFrame
         input, cell, condition and experiment of the cells that are pooled.
     options : PoolParameters
@@ -57,11 +59,25 @@ def pool_gains(links: pd.DataFrame, cells: pd.DataFrame, options: PoolParameters
         for name, table in pool.tables.items():
             if len(table):
                 parts[name].append(_with_names(table, named).assign(kind=kind))
+    weaker = _weaker(named, cells)
+    parts["pooled"] = [
+        table.merge(weaker, "left").assign(weaker=lambda one: one["weaker"].eq(True) & (one["kind"] == "raw"))
+        for table in parts["pooled"]
+    ]
     for name, tables in parts.items():
         found.tables[name] = pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
     said = [*link_sentences(found.tables["pooled"]), *difference_sentences(found.tables["comparisons"])]
     found.sentences = [*said, *found.sentences]
     return found
+
+
+def _weaker(named: pd.DataFrame, cells: pd.DataFrame) -> pd.DataFrame:
+    """Which links noise of measurement alone would make, by condition and layer; experiments count once."""
+    gains, keys = ["gain", "gain_reversed"], [CONDITION, *_NAMES, "layer"]
+    known = named[[*KEYS, *_NAMES, "layer", *gains]].merge(cells[[*KEYS, CONDITION, EXPERIMENT]], on=KEYS)
+    of_experiments = known.groupby([*keys, EXPERIMENT], sort=False)[gains].mean().astype("float64")
+    means = of_experiments.groupby(keys, sort=False).mean().reset_index()
+    return means[keys].assign(weaker=weaker_links(means, within=[CONDITION]))
 
 
 def _links(named: pd.DataFrame) -> list[str]:

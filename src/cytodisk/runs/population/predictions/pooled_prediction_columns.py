@@ -45,6 +45,8 @@ POOLED_PREDICTION_TABLES: dict[str, Columns] = {
         *_NAMES,
         _LINKS["given"],
         LAYER,
+        _LINKS["gain"],
+        _LINKS["gain_reversed"],
         _LINKS["gain_excess"],
         _SCORE,
         _LINKS["p"],
@@ -87,6 +89,11 @@ POOLED_PREDICTION_TABLES: dict[str, Columns] = {
             "predicts the target",
         ),
         SMALLEST_P,
+        _LINKS["weaker"]._replace(
+            meaning="the other direction is stronger, and noise of measurement alone would make this one: of "
+            "the means over experiments, gain is less than half of gain_reversed, and that of the other "
+            "direction more than its own; of raw alone"
+        ),
     ),
     "comparisons": (
         *COMPARED,

@@ -36,7 +36,18 @@ from cytodisk.store.predictions.prediction_store import Prediction, read_predict
 from cytodisk.taking import takes
 
 _CELLS = ("cell", "status", "reason", "qc_flags", "frames", "surrogates", "geometry_not_tested")
-_LINKS = ("cell", "source", "target", "given", "layer", "gain_excess", "p", "effect")
+_LINKS = (
+    "cell",
+    "source",
+    "target",
+    "given",
+    "layer",
+    "gain",
+    "gain_reversed",
+    "gain_excess",
+    "p",
+    "effect",
+)
 _PARTIAL = ("gain_excess_partial", "p_partial")
 
 
