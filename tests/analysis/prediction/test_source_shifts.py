@@ -9,6 +9,7 @@ from cytodisk.analysis.prediction.layer_series import LayerSeries
 from cytodisk.analysis.prediction.pooled_autoregression import Held, explained
 from cytodisk.analysis.prediction.predict import predict
 from cytodisk.analysis.prediction.prediction_orders import Orders
+from cytodisk.analysis.prediction.source_scales import Scales
 from cytodisk.analysis.prediction.source_shifts import ShiftedSource, Shifts, circle_of
 from cytodisk.errors import ParameterError
 
@@ -32,10 +33,12 @@ def test_products_are_those_of_the_shifted_columns(frames: int) -> None:
     used = random.random((frames, SECTORS)) < 0.8
     table[~used] = 0.0
     shifts = Shifts(np.array([5, 17, 0]), np.array([1, 3, 0]))
-    run = ShiftedSource(source, used, PAST, shifts)
+    scales = Scales(random.uniform(0.5, 2.0, frames), random.uniform(0.1, 3.0, SECTORS))
+    run = ShiftedSource(source, used, PAST, shifts, scales)
     with_columns, with_itself = run.products(table)
     for place, (later, around) in enumerate(zip(shifts.frames, shifts.sectors, strict=True)):
-        columns = np.where(used[..., None], shifted(source, later, around), 0.0)
+        moved = shifted(source / scales.table, later, around) * scales.table[..., None]
+        columns = np.where(used[..., None], moved, 0.0)
         centred = columns - np.where(used[..., None], columns.sum(axis=0) / used.sum(axis=0)[:, None], 0.0)
         np.testing.assert_allclose(with_columns[place], np.einsum("tsq,tsk->qk", columns, table), atol=1e-12)
         np.testing.assert_allclose(with_itself[place], np.einsum("tsq,tsk->qk", centred, centred), atol=1e-12)
@@ -54,7 +57,7 @@ def test_shifts_keep_their_distance_and_none_comes_twice(turns: bool) -> None:
 def test_one_frame_of_past_on_a_circle_as_long_as_the_movie_tears_no_row() -> None:
     source = np.random.default_rng(8).normal(size=(FRAMES, SECTORS))
     used = np.ones(source.shape, dtype=bool)
-    run = ShiftedSource(source, used, 1, Shifts(np.array([4]), np.array([1])))
+    run = ShiftedSource(source, used, 1, Shifts(np.array([4]), np.array([1])), Scales.alike(*source.shape))
     with_columns, with_itself = run.products(source[..., None])
     moved = np.roll(source, (5, 1), axis=(0, 1))
     assert with_columns.item() == pytest.approx(np.sum(moved * source))
@@ -84,6 +87,7 @@ def test_a_surrogate_is_the_model_with_the_shifted_rest() -> None:
     gains = chance_gains(held, series, orders, PAST, None, count=40, seed=0)
     followed, rest = split_source(series, orders, PAST)
     shifts = Shifts.drawn(circle_of(FRAMES), SECTORS, PAST, 40, 0)
+    scale = Scales.of(rest, rest != 0.0, 0.5 * PAST).table
     own = [target[rows.frame - lag, rows.sector] for lag in (1, 2)]
     beside = [np.roll(target, 1, axis=1)[rows.frame - lag, rows.sector] for lag in (1, 2)]
     means = np.eye(SECTORS)[rows.sector]
@@ -91,7 +95,8 @@ def test_a_surrogate_is_the_model_with_the_shifted_rest() -> None:
     wanted = target[rows.frame, rows.sector]
     kept = np.stack([followed[rows.frame - lag, rows.sector] for lag in range(1, PAST + 1)], axis=-1)
     for gain, frames, sectors in zip(gains, shifts.frames, shifts.sectors, strict=True):
-        columns = kept + shifted(rest, frames, sectors)[rows.frame, rows.sector]
+        moved = shifted(rest / scale, frames, sectors) * scale[..., None]
+        columns = kept + moved[rows.frame, rows.sector]
         before = np.linalg.lstsq(held_columns, wanted, rcond=None)[1].item()
         after = np.linalg.lstsq(np.column_stack([held_columns, columns]), wanted, rcond=None)[1].item()
         assert gain == pytest.approx(np.log(before / after), abs=1e-10)

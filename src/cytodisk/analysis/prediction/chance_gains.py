@@ -8,6 +8,7 @@ from cytodisk.analysis.prediction.lagged_design import Rows
 from cytodisk.analysis.prediction.layer_series import LayerSeries
 from cytodisk.analysis.prediction.pooled_autoregression import Held, best_gain, explained, without
 from cytodisk.analysis.prediction.prediction_orders import Orders
+from cytodisk.analysis.prediction.source_scales import Scales
 from cytodisk.analysis.prediction.source_shifts import ShiftedSource, Shifts, circle_of
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import ParameterError
@@ -70,7 +71,8 @@ def chance_gains(
             f"either side, too few for a p-value: pass at least {2 * past + FEWEST_SHIFTS} frames, a "
             "smaller max_order, or surrogates=0"
         )
-    shifted = ShiftedSource(rest[:, kept], used[:, kept], past, shifts)
+    scales = Scales.of(rest[:, kept], rest[:, kept] != 0.0, 0.5 * past)
+    shifted = ShiftedSource(rest[:, kept], used[:, kept], past, shifts, scales)
     fixed = _lags(held, followed, past)
     columns = np.column_stack([held.basis, fixed, held.left])
     products, square = shifted.products(held.rows.table(columns, len(rest))[:, kept])

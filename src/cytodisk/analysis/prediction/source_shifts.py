@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import fft
 
+from cytodisk.analysis.prediction.source_scales import Scales
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 
 
@@ -50,6 +51,8 @@ class ShiftedSource:
     past : int
         Lags 1 to `past` of the source are its columns.
     shifts : Shifts
+    scales : Scales
+        They stay in their place: what is shifted is the source divided by them.
 
     Notes
     -----
@@ -57,14 +60,14 @@ class ShiftedSource:
     lags are 0. Products are those over the whole circle, by Fourier, less those of these few rows.
     """
 
-    def __init__(self, source: FloatArray, used: BoolArray, past: int, shifts: Shifts):
+    def __init__(self, source: FloatArray, used: BoolArray, past: int, shifts: Shifts, scales: Scales):
         self._past, self._shifts = past, shifts
         self._frames = len(source)
         circle = circle_of(self._frames)
-        self._source = np.zeros((circle, source.shape[1]))
-        self._source[: self._frames] = source
-        self._used = np.zeros(self._source.shape)
-        self._used[: self._frames] = used
+        self._source = _on(circle, source / scales.table)
+        self._used = _on(circle, used)
+        self._sector_scales = scales.sectors
+        self._by_frame = _on(circle, used * scales.frames[:, None])
         lags = np.arange(1, past + 1)
         self._at = (shifts.frames[:, None] + lags) % circle, shifts.sectors[:, None]
         torn = np.concatenate([np.arange(past), np.arange(self._frames + 1, circle)])
@@ -85,18 +88,18 @@ class ShiftedSource:
         with_columns : ndarray of shape (R, past, K) and dtype float
         with_itself : ndarray of shape (R, past, past) and dtype float
         """
-        count = len(self._shifts.frames)
+        count, circle = len(self._shifts.frames), len(self._source)
+        scale = self._by_frame * self._sector_scales
         columns = np.empty((count, self._past, tables.shape[2]))
         spectrum = np.conj(fft.rfft2(self._source))
+        whole = _on(circle, tables)
         for place in range(tables.shape[2]):
-            columns[..., place] = self._around(self._on_circle(tables[..., place]), spectrum)[self._at]
-        itself, sums = self._with_itself(), self._sums()
-        whole = np.zeros((*self._source.shape, tables.shape[2]))
-        whole[: self._frames] = tables
+            columns[..., place] = self._around(scale * whole[..., place], spectrum)[self._at]
+        itself, sums = self._with_itself(scale**2), self._sums()
         sectors = self._source.shape[1]
         for row, (shift, turn) in enumerate(zip(self._shifts.frames, self._shifts.sectors, strict=True)):
-            at = (self._torn + shift) % len(self._source)
-            past = np.roll(self._torn_past, turn, axis=1) * self._used[at][..., None]
+            at = (self._torn + shift) % circle
+            past = np.roll(self._torn_past, turn, axis=1) * scale[at][..., None]
             flat = past.reshape(at.size * sectors, self._past)
             columns[row] -= flat.T @ whole[at].reshape(len(flat), tables.shape[2])
             itself[row] -= flat.T @ flat
@@ -105,21 +108,16 @@ class ShiftedSource:
         of_means = sums / np.sqrt(weights)
         return columns, itself - of_means.transpose(0, 2, 1) @ of_means
 
-    def _on_circle(self, table: FloatArray) -> FloatArray:
-        whole = np.zeros_like(self._source)
-        whole[: self._frames] = table
-        return whole
-
     def _around(self, table: FloatArray, spectrum: FloatArray) -> FloatArray:
         """Products of a table with what has a spectrum, at every shift."""
         return np.asarray(fft.irfft2(fft.rfft2(table) * spectrum, s=table.shape))
 
-    def _with_itself(self) -> FloatArray:
+    def _with_itself(self, weights: FloatArray) -> FloatArray:
         """Products of the source's past with itself over the rows."""
         found = np.empty((len(self._shifts.frames), self._past, self._past))
         for apart in range(self._past):
             twice = self._source * np.roll(self._source, apart, axis=0)
-            products = self._around(self._used, np.conj(fft.rfft2(twice)))[self._at]
+            products = self._around(weights, np.conj(fft.rfft2(twice)))[self._at]
             for lag in range(self._past - apart):
                 found[:, lag, lag + apart] = found[:, lag + apart, lag] = products[:, lag]
         return found
@@ -130,9 +128,15 @@ class ShiftedSource:
         frames, turns = self._at
         sectors = self._source.shape[1]
         found = np.empty((len(frames), sectors, self._past))
-        patterns, pattern = np.unique(self._used, axis=1, return_inverse=True)  # most often one
+        patterns, pattern = np.unique(self._by_frame, axis=1, return_inverse=True)  # most often one
         for number, used in enumerate(patterns.T):
             sums = fft.irfft(fft.rfft(used)[:, None] * spectrum, n=len(used), axis=0)
             for place in np.nonzero(pattern == number)[0]:
-                found[:, place] = sums[frames, (place - turns) % sectors]
+                found[:, place] = self._sector_scales[place] * sums[frames, (place - turns) % sectors]
         return found
+
+
+def _on(circle: int, table: FloatArray | BoolArray) -> FloatArray:
+    whole = np.zeros((circle, *table.shape[1:]))
+    whole[: len(table)] = table
+    return whole
