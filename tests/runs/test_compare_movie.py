@@ -1,8 +1,10 @@
+import shutil
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
+import pyarrow.parquet as pq
 import pytest
 import tifffile
 
@@ -76,6 +78,17 @@ def test_medians_over_frames_stand_by_method_channel_and_layer(comparison: cd.Co
     told = pd.read_csv(comparison.path / "comparison_columns.csv")
     assert list(told.loc[told["table"] == "comparison_movie.csv", "name"]) == list(table.columns)
     assert comparison.by_method["area_error_q25"].isna().all()
+
+
+def test_a_comparison_of_an_earlier_version_opens(comparison: cd.Comparison, tmp_path: Path) -> None:
+    earlier = tmp_path / "earlier"
+    shutil.copytree(comparison.path, earlier)
+    table = pq.read_table(earlier / "cells.parquet").drop_columns(["folded", "carried_outside"])
+    pq.write_table(table, earlier / "cells.parquet")
+    found = cd.open_comparison(earlier)
+    assert not {"folded", "carried_outside"} & set(found.cells)
+    pd.testing.assert_frame_equal(found.by_method, comparison.by_method)
+    pd.testing.assert_frame_equal(found.through_time, comparison.through_time)
 
 
 def test_a_row_sums_up_the_frames(comparison: cd.Comparison) -> None:

@@ -72,8 +72,8 @@ _CELLS: Columns = (
     SECONDS,
 )
 
-# Beside these in a comparison of movies.
-_MOVIE: Columns = (
+# Beside these in a comparison of movies; those of earlier versions have none.
+REGISTERED: Columns = (
     Column("folded", pa.float64(), "1", "registered: share of the cell where the field folds, median over "
            "frames"),
     Column("carried_outside", pa.float64(), "1", "registered: share of the windows' area that the field "
@@ -140,7 +140,7 @@ COMPARED_MOVIE = StudyKind(
     "movie comparison",
     "cytodisk compare-windows --movie",
     _READER,
-    (*_CELLS, *_MOVIE),
+    (*_CELLS, *REGISTERED),
     {"layers": _LAYERS, "consistency": _CONSISTENCY},
     (*_SUMMARIES, THROUGH_TIME_CSV, *_ACTIVITIES),
 )

@@ -30,6 +30,7 @@ from cytodisk.runs.compare_windows.compare_tables import (
     COMPARED_CELLS,
     COMPARED_MOVIE,
     COMPARED_NUCLEI,
+    REGISTERED,
 )
 from cytodisk.scale import Scale
 from cytodisk.store.csv_tables import write_csv
@@ -224,7 +225,8 @@ def open_comparison(path: str | os.PathLike[str]) -> Comparison:
             f"{folder / PROVENANCE}: parameters.methods names none, got {short_words(methods)}: {REMEDY}"
         )
     kind, units = kinds[provenance["run"]], units_in(provenance)
-    cells = read_checked(folder / CELLS, kind.cells, units=units)
+    needed = tuple(column for column in kind.cells if column not in REGISTERED)
+    cells = read_checked(folder / CELLS, needed, REGISTERED, units=units)
     layers = read_checked(folder / "layers.parquet", kind.others["layers"], units=units)
     return Comparison(folder, cells, layers, provenance)
 
