@@ -134,6 +134,7 @@ def test_phase_is_that_of_the_wave() -> None:
         (np.ones(40), 1.0, r"dims \(time, sector\), got an array of shape \(40,\)"),
         (np.eye(40), None, "pass the seconds between frames"),
         (np.full((40, 8), np.inf), 1.0, "finite"),
+        (np.where(np.eye(40) > 0, 1.0, np.nan), 1.0, "no frame in which half of the 40 sectors have one"),
     ],
 )
 def test_what_cannot_be_used_is_said(values: Any, interval: float | None, words: str) -> None:
@@ -143,7 +144,8 @@ def test_what_cannot_be_used_is_said(values: Any, interval: float | None, words:
 
 @pytest.mark.parametrize(
     ("length", "words"),
-    [(np.ones(7), "got shape"), (-1.0, "of at least"), (np.zeros(36), "above 0")],
+    [(np.ones(7), "got shape"), (-1.0, "of at least"), (np.full(36, np.nan), "got NaN alone: leave")]
+    + [(np.arange(36.0) - worst, f"above 0, .* got {-worst}") for worst in (0, 2)],
 )
 def test_lengths_that_do_not_fit_are_said(length: Any, words: str) -> None:
     with pytest.raises(ParameterError, match=words):

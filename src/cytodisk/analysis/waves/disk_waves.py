@@ -15,7 +15,7 @@ from cytodisk.analysis.waves.depth_surrogates import DepthNull
 from cytodisk.analysis.waves.depth_travel import DepthTravel, depth_travel
 from cytodisk.analysis.waves.disk_series import DiskSeries, disk_series
 from cytodisk.analysis.waves.edge_modes import sector_angles
-from cytodisk.analysis.waves.edge_series import check_shown, named_values
+from cytodisk.analysis.waves.edge_series import check_shown, named_values, numbers_along
 from cytodisk.analysis.waves.edge_waves import ROTATING, SIGNIFICANT
 from cytodisk.analysis.waves.mode_spectrum import Bands, bands, refined_frequency
 from cytodisk.analysis.waves.wave_background import background, wave_scores
@@ -150,7 +150,7 @@ def disk_waves(
             "shortest_period_s": found.periods[0],
             "longest_period_s": found.periods[1],
             "frames_used": int(series.used.sum()),
-            "layers_without_values": sorted(set(range(named.sizes["layer"])) - set(series.numbers.tolist())),
+            "layers_without_values": np.delete(numbers_along(named, "layer"), series.numbers).tolist(),
         }
     )
 
@@ -255,8 +255,7 @@ def _dataset(named: xr.DataArray, series: DiskSeries, found: DiskWave) -> xr.Dat
         data[f"{prefix}amplitude"] = (named.dims, np.abs(everywhere), {"units": unit})
     data["order_null"] = ("surrogate", null_orders(found.null), {"units": "1"})
     coords: dict[str, Any] = {"time_s": ("time", series.layers[0].seconds, {"units": "s"})}
-    for name in ("layer", "sector"):
-        coords[name] = named[name].variable if name in named.coords else np.arange(named.sizes[name])
+    coords |= {name: (name, numbers_along(named, name)) for name in ("layer", "sector")}
     coords |= {name: named[name].variable for name in ("time", "frame") if has_times(named, name)}
     return xr.Dataset(data, coords)
 

@@ -103,6 +103,11 @@ def named_values(values: Any, dims: tuple[str, ...]) -> xr.DataArray:
     return ordered
 
 
+def numbers_along(values: xr.DataArray, dim: str) -> np.ndarray[Any, Any]:
+    """Numbers of layers or sectors; from 0 where they have none."""
+    return values[dim].to_numpy() if dim in values.coords else np.arange(values.sizes[dim])
+
+
 def frame_times(values: xr.DataArray, frame_interval_s: float | None) -> FloatArray:
     """Seconds of the frames, from the coordinate time_s or the interval.
 
@@ -164,7 +169,10 @@ def sector_lengths(
             f"got shape {given.shape}"
         )
     if (given <= 0).any() or np.isinf(given).any() or not np.isfinite(given).any():
-        raise ParameterError(f"{name} must be above 0: leave it out where it is not known")
+        raise ParameterError(
+            f"{name} must be above 0, and known in some frame, got {_smallest(given)}: leave it out where it "
+            "is not known"
+        )
     if given.ndim == 1:
         return equal, given
     known = np.isfinite(given).all(axis=1)
@@ -189,6 +197,11 @@ def check_shown(series: EdgeSeries, how: WaveSearchParameters) -> tuple[float, f
         raise ParameterError("values must be finite, or NaN where there are none")
     if len(values) < 2 or not known.any():
         raise ParameterError(f"values has {int(known.any(axis=1).sum())} frames with values: pass more")
+    if not series.used.any():
+        raise ParameterError(
+            f"values has no frame in which half of the {int(known.any(axis=0).sum())} sectors have one: fill "
+            "in what is missing, or pass fewer sectors"
+        )
     used = values[series.used]
     spread = np.nanmax(used) - np.nanmin(used)
     changes = np.nanmax(used, axis=0, initial=-np.inf) - np.nanmin(used, axis=0, initial=np.inf)
@@ -203,6 +216,14 @@ def check_shown(series: EdgeSeries, how: WaveSearchParameters) -> tuple[float, f
             f"duration / {how.periods:g}, {longest:g} s: pass at least {needed} frames"
         )
     return shortest, longest
+
+
+def _smallest(given: FloatArray) -> str:
+    """The worst of what was given."""
+    known = given[~np.isnan(given)]
+    return (
+        "NaN alone" if not known.size else f"{'inf' if np.isinf(known).any() else format(known.min(), 'g')}"
+    )
 
 
 def _nearest(present: IntArray, count: int) -> IntArray:

@@ -10,7 +10,13 @@ import xarray as xr
 
 from cytodisk.analysis.time_steps import has_times
 from cytodisk.analysis.waves.edge_modes import sector_angles
-from cytodisk.analysis.waves.edge_series import EdgeSeries, frame_times, named_values, sector_lengths
+from cytodisk.analysis.waves.edge_series import (
+    EdgeSeries,
+    frame_times,
+    named_values,
+    numbers_along,
+    sector_lengths,
+)
 from cytodisk.analysis.waves.wave_order import null_orders, order_score, p_value
 from cytodisk.analysis.waves.wave_phase import (
     demodulated,
@@ -100,7 +106,7 @@ def edge_waves(
     series = EdgeSeries(named.to_numpy().astype(np.float64), seconds, lengths, edge_um)
     start = _first_sector(series)
     found = strongest_wave(series.from_sector(start), how, progress)
-    return _dataset(named, series, found, start).assign_attrs(_attrs(series, found, how))
+    return _dataset(named, series, found, start).assign_attrs(_attrs(named, series, found, how))
 
 
 def wave_kind(mode: int, direction: float, p: float) -> str:
@@ -159,17 +165,19 @@ def _dataset(named: xr.DataArray, series: EdgeSeries, found: WaveFound, start: i
         "around": ("around", np.arange(highest + 1), {"units": "1"}),
         "travelling": ("travelling", np.arange(-highest, highest + 1), {"units": "1"}),
         "frequency": ("frequency", found.frequencies, {"units": "1/s"}),
-        "sector": named["sector"].variable if "sector" in named.coords else np.arange(named.sizes["sector"]),
+        "sector": numbers_along(named, "sector"),
     }
     coords |= {name: named[name].variable for name in ("time", "frame") if has_times(named, name)}
     return xr.Dataset(data, coords)
 
 
-def _attrs(series: EdgeSeries, found: WaveFound, how: WaveSearchParameters) -> dict[str, Any]:
+def _attrs(
+    named: xr.DataArray, series: EdgeSeries, found: WaveFound, how: WaveSearchParameters
+) -> dict[str, Any]:
     known = np.isfinite(series.values).any(axis=0)
     return how.model_dump() | {
         "shortest_period_s": found.periods[0],
         "longest_period_s": found.periods[1],
         "frames_used": int(series.used.sum()),
-        "sectors_without_values": [int(sector) for sector in np.flatnonzero(~known)],
+        "sectors_without_values": numbers_along(named, "sector")[~known].tolist(),
     }
