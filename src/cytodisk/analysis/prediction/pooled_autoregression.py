@@ -66,14 +66,19 @@ class SourceFit:
     ----------
     coefficient, low, high : ndarray of shape (q,) and dtype float
         Of lags 1 to q, with 95 % intervals that are robust to sectors that move together in a frame.
-    effect : float
-        Sum of the coefficients, in standard deviations of the target for one of the source.
+    spread_ratio : float
+        Standard deviation of the source over that of the target, within sectors.
     """
 
     coefficient: FloatArray
     low: FloatArray
     high: FloatArray
-    effect: float
+    spread_ratio: float
+
+    @property
+    def effect(self) -> float:
+        """Sum of the coefficients, in standard deviations of the target for one of the source."""
+        return float(self.coefficient.sum() * self.spread_ratio)
 
 
 def without(columns: FloatArray, basis: FloatArray) -> FloatArray:
@@ -176,5 +181,5 @@ def fit_source(held: Held, columns: FloatArray, source_variance: float) -> Sourc
     factor = len(frames) / (len(frames) - 1.0) * (size - 1.0) / (size - used)
     variance = factor * bread @ (scores.T @ scores) @ bread.T
     reach = student.ppf(0.5 + 0.5 * _LEVEL, len(frames) - 1) * np.sqrt(np.diag(variance))
-    scale = np.sqrt(source_variance / held.own_variance)
-    return SourceFit(coefficient, coefficient - reach, coefficient + reach, float(coefficient.sum() * scale))
+    ratio = float(np.sqrt(source_variance / held.own_variance))
+    return SourceFit(coefficient, coefficient - reach, coefficient + reach, ratio)

@@ -64,10 +64,12 @@ def predict(
         gain_excess, gain minus the surrogates' mean, which is 0 on average where nothing predicts;
         likelihood_ratio, rows times gain; order, of the target's and its neighbours' past; given_order;
         source_order; n, rows; sectors used; effect, the sum of the source's coefficients in standard
-        deviations: its sign says whether more source means more or less target. coefficient with
-        coefficient_low and coefficient_high (95 %, robust to sectors that move together), over lag = 1 … NaN
-        beyond the order. With surrogates gain_null (layer, surrogate), threshold, which 5 % of them exceed,
-        p, and q (Benjamini-Hochberg over layers). reason says why a layer has no values, "" where it has.
+        deviations: its sign says whether more source means more or less target; spread_ratio, the standard
+        deviation of the source over that of the target, which turns coefficients into such ones. coefficient
+        with coefficient_low and coefficient_high (95 %, robust to sectors that move together), over lag = 1 …
+        NaN beyond the order. With surrogates gain_null (layer, surrogate), threshold, which 5 % of them
+        exceed, p, and q (Benjamini-Hochberg over layers). reason says why a layer has no values, "" where it
+        has.
 
         A sector in which source or target is constant, or whose neighbours are not known, is not used.
 
@@ -169,6 +171,7 @@ class _LayerResult:
             "n": self.rows,
             "sectors": self.sectors,
             "effect": self.fit.effect,
+            "spread_ratio": self.fit.spread_ratio,
         }
         if null.size:
             known["gain_excess"] = self.gain - null.mean()

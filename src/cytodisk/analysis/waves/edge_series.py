@@ -219,11 +219,11 @@ def check_shown(series: EdgeSeries, how: WaveSearchParameters) -> tuple[float, f
 
 
 def _smallest(given: FloatArray) -> str:
-    """The worst of what was given."""
+    """The smallest of what was given in words, or inf where that is among it."""
     known = given[~np.isnan(given)]
-    return (
-        "NaN alone" if not known.size else f"{'inf' if np.isinf(known).any() else format(known.min(), 'g')}"
-    )
+    if not known.size:
+        return "NaN alone"
+    return "inf" if np.isinf(known).any() else f"{known.min():g}"
 
 
 def _nearest(present: IntArray, count: int) -> IntArray:

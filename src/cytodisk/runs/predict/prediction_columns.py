@@ -80,7 +80,12 @@ LINKS: Columns = (
     ),
     Column("drifting", pa.float64(), "1", "share of series that drift, of source or target, the lesser"),
     Column("status", pa.string(), "", "ok or refused"),
-    Column("reason", pa.string(), "", "why the link could not be tested in this layer; empty if it was"),
+    Column(
+        "reason",
+        pa.string(),
+        "",
+        "why the link could not be tested in this layer, or not without geometry; empty if it was",
+    ),
 )
 
 LAGS: Columns = (

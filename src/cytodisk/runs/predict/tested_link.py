@@ -53,8 +53,8 @@ class TestedLink:
         Of `predict`; None where it was refused.
     partial : Dataset or None
         The same without geometry.
-    reason : str
-        Why it was refused; empty if it was not.
+    reason, partial_reason : str
+        Why each was refused; empty if it was not, or not tried.
     stress : str
         What makes p of independent series too small, with commas between.
     """
@@ -65,6 +65,7 @@ class TestedLink:
     raw: xr.Dataset | None
     partial: xr.Dataset | None = None
     reason: str = ""
+    partial_reason: str = ""
     stress: str = ""
 
     __test__ = False
@@ -101,9 +102,7 @@ class TestedLink:
         if self.raw is None:
             return pd.DataFrame()
         names = {"coefficient": "coefficient", "coefficient_low": "low", "coefficient_high": "high"}
-        total = self.raw["coefficient"].sum("lag")
-        scale = self.raw["effect"] / total.where(total != 0)  # to series of standard deviation 1
-        found = (self.raw[list(names)] * scale).rename(names).reset_coords(drop=True)
+        found = (self.raw[list(names)] * self.raw["spread_ratio"]).rename(names).reset_coords(drop=True)
         table = found.to_dataframe(dim_order=["layer", "lag"]).reset_index()
         table = table[table["coefficient"].notna()].reset_index(drop=True)
         lag_s = table["lag"] * interval_s if interval_s is not None else np.nan
@@ -113,7 +112,11 @@ class TestedLink:
         return table
 
     def _reason(self, layer: int) -> str:
-        return self.reason if self.raw is None else str(self.raw["reason"].sel(layer=layer).item())
+        """Why a layer was refused; of one that was not, why it was without geometry."""
+        if whole := _reason_of(self.raw, self.reason, layer):
+            return whole
+        partial = _reason_of(self.partial, self.partial_reason, layer)
+        return f"without geometry: {partial}" if partial else ""
 
     def _names(self) -> dict[str, str]:
         return {"source": self.source, "target": self.target, "given": ", ".join(self.given)}
@@ -138,22 +141,36 @@ def tested_link(
     how : PredictionParameters
     progress : list of two callables or None
     """
-    found: list[xr.Dataset | None] = []
-    reason = ""
-    for some, report in zip(series, progress, strict=True):
-        if not some:
-            found.append(None)
-            continue
-        try:
-            beside = {name: some[name] for name in given}
-            with drift_is_told():
-                made = predict(some[source], some[target], beside, progress=report, **how.model_dump())
-            found.append(made)
-        except ParameterError as error:
-            found.append(None)
-            reason = reason or (str(error) if len(found) == 1 else "")
-    raw, partial = found
-    return TestedLink(source, target, given, raw, None if raw is None else partial, reason)
+    names = (source, target, *given)
+    (raw, reason), (partial, partial_reason) = (
+        _predicted(some, names, how, report) for some, report in zip(series, progress, strict=True)
+    )
+    if raw is None:
+        return TestedLink(source, target, given, None, None, reason)
+    return TestedLink(source, target, given, raw, partial, "", partial_reason)
+
+
+def _predicted(
+    series: Mapping[str, xr.DataArray],
+    names: tuple[str, ...],
+    how: PredictionParameters,
+    progress: Progress | None,
+) -> tuple[xr.Dataset | None, str]:
+    """What `predict` finds of source, target and what is given, or why it refuses; nothing of no series."""
+    if not series:
+        return None, ""
+    source, target, *given = names
+    beside = {name: series[name] for name in given}
+    try:
+        with drift_is_told():
+            return predict(series[source], series[target], beside, progress=progress, **how.model_dump()), ""
+    except ParameterError as error:
+        return None, str(error)
+
+
+def _reason_of(found: xr.Dataset | None, whole: str, layer: int) -> str:
+    """Why a layer was refused, by itself or with all others."""
+    return whole if found is None else str(found["reason"].sel(layer=layer).item())
 
 
 def links_table(rows: pd.DataFrame) -> pd.DataFrame:
