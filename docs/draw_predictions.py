@@ -33,7 +33,6 @@ TARGET = REPOSITORY / "docs" / "source" / "guides" / "does_it_predict"
 LAYERS, SECTORS, CHANNEL = 4, 24, "Rac1"
 SHOWN_FRAME, SHOWN_FRAMES = 44, 60
 WIDTH_MM, HEIGHT_MM, DPI = 119.0, 48.0, 260
-BLUE, ORANGE = "#0072B2", "#D55E00"
 PARTS = ("example", "failures")
 ALPHA = 0.05
 CASES = {
@@ -88,7 +87,7 @@ def example() -> None:
         study = cd.open_study(here / "out")
         activity = study.activity(0)
         signal, velocity = activity["mean"].sel(channel=CHANNEL), activity["velocity"]
-        draw(truth, signal, velocity)
+        draw(truth, signal, velocity, study.prediction(*study.predictions[0]).links)
     print(said)
 
 
@@ -140,8 +139,10 @@ def wrapped(said: str) -> str:
     return "\n".join(filled) + "\n"
 
 
-def draw(truth: cd.simulate.DrivenMovie, signal: xr.DataArray, velocity: xr.DataArray) -> None:
-    """The cell, signal and velocity through time, and the gain of each layer in both directions."""
+def draw(
+    truth: cd.simulate.DrivenMovie, signal: xr.DataArray, velocity: xr.DataArray, links: pd.DataFrame
+) -> None:
+    """The cell, signal and velocity through time, and what was found in each layer in both directions."""
     with cd.plot.paper_style():
         figure = Figure(figsize=(WIDTH_MM / 25.4, HEIGHT_MM / 25.4), layout="constrained")
         grid = figure.add_gridspec(2, 3, width_ratios=(1.0, 1.4, 1.1))
@@ -156,7 +157,7 @@ def draw(truth: cd.simulate.DrivenMovie, signal: xr.DataArray, velocity: xr.Data
         lower.set(ylabel="sector", title="velocity of the edge")
         for ax in (upper, lower):
             ax.set_xticks((0, 100, 200))
-        draw_gains(figure.add_subplot(grid[:, 2]), signal, velocity)
+        draw_gains(figure.add_subplot(grid[:, 2]), links)
         with TemporaryDirectory() as place:
             picture = Path(place) / "predicts.png"
             figure.savefig(picture, dpi=DPI)
@@ -173,17 +174,14 @@ def draw_cell(ax: Axes, truth: cd.simulate.DrivenMovie) -> None:
     ax.set_title(f"{CHANNEL}, frame {SHOWN_FRAME}")
 
 
-def draw_gains(ax: Axes, signal: xr.DataArray, velocity: xr.DataArray) -> None:
-    """Gain by layer in both directions, with the limit of chance."""
-    for source, target, words, colour, place in (
-        (signal, velocity, f"{CHANNEL} predicts\nthe edge", BLUE, (0.3, 0.85)),
-        (velocity, signal, f"the edge\npredicts {CHANNEL}", ORANGE, (0.55, 0.18)),
+def draw_gains(ax: Axes, links: pd.DataFrame) -> None:
+    """How much error is taken away by layer in both directions, with the limit of chance."""
+    there, back = cd.plot.draw_gain_profile(ax, links)
+    for line, words, place in (
+        (there, f"{CHANNEL} predicts\nthe edge", (0.34, 0.88)),
+        (back, f"the edge\npredicts {CHANNEL}", (0.05, 0.12)),
     ):
-        found = cd.predict(source, target)
-        ax.plot(found["layer"], found["gain"], "o-", color=colour, markersize=2.5, linewidth=1.0)
-        ax.text(*place, words, color=colour, transform=ax.transAxes, fontsize="small")
-    ax.plot(found["layer"], found["threshold"], ":", color="0.2", linewidth=0.8)
-    ax.set(xlabel="layer (0 at the edge)", ylabel="gain (nats)", xticks=range(LAYERS), ylim=(-0.01, None))
+        ax.text(*place, words, color=line.get_color(), transform=ax.transAxes, fontsize="small")
 
 
 if __name__ == "__main__":
