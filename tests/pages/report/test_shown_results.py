@@ -97,6 +97,18 @@ def test_links_have_their_numbers_by_layer_and_their_finding(cell: ShownCell) ->
     assert found["finding"]
 
 
+def test_layers_that_do_not_count_are_lost_and_links_of_these_alone_doubtful(cell: ShownCell) -> None:
+    rows = pd.DataFrame({"layer": range(LAYERS), "q": 0.5, "gain_excess": 0.1, "given": "", "reason": ""})
+    rows.loc[:1, "q"], rows.loc[0, "gain_excess"] = 0.01, 0.4
+    rows = rows.assign(weaker=rows["layer"] == 0)
+    one = shown_predictions._link(cell, "a", "b", rows)
+    assert (one["doubtful"], one["best_gain"]) == (False, 0.1)
+    np.testing.assert_array_equal(one["lost"], np.arange(LAYERS) == 0)
+    one = shown_predictions._link(cell, "a", "b", rows.assign(geometry=rows["layer"] == 1))
+    assert one["doubtful"]
+    assert not shown_predictions._link(cell, "a", "b", rows.assign(q=0.5))["doubtful"]
+
+
 def test_waves_have_their_phase_by_frame_and_sector(cell: ShownCell) -> None:
     (found,), notes = waves_of(cell)
     assert notes == []

@@ -11,6 +11,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.pages.report.encode import pack_floats
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_names import labels_of
+from cytodisk.plot.prediction.link_looks import ALPHA, lost_in
 from cytodisk.runs.channel_names import shown_name
 from cytodisk.runs.findings.prediction_finding import prediction_finding
 from cytodisk.store.predictions.prediction_store import Prediction
@@ -32,7 +33,8 @@ def predictions_of(cell: ShownCell, flagged: tuple[str, ...] = ()) -> list[dict[
     -------
     list of dict
         For the page's scripts: label, finding, signals, and links with their numbers by layer; empty if
-        nothing was tested in this cell.
+        nothing was tested in this cell. "lost" layers of a link do not count, as geometry or noise of
+        measurement may have made them; a link is "doubtful" if all its significant layers are.
     """
     names = sorted(cell.study.predictions, key=lambda one: bool(one and one[0]))
     opened = [(one, cell.study.prediction(*one)) for one in names]
@@ -65,7 +67,9 @@ def _prediction(cell: ShownCell, found: Prediction, flagged: tuple[str, ...]) ->
 
 def _link(cell: ShownCell, source: str, target: str, rows: pd.DataFrame) -> dict[str, Any]:
     known = rows.dropna(subset="q")
-    best = known.iloc[int(known["q"].to_numpy().argmin())] if len(known) else None
+    found, lost = known["q"] < ALPHA, lost_in(known)
+    counted = known[found & ~lost]
+    best = _least(counted if len(counted) else known)
     return {
         "source": source,
         "target": target,
@@ -73,8 +77,15 @@ def _link(cell: ShownCell, source: str, target: str, rows: pd.DataFrame) -> dict
         "reasons": list(dict.fromkeys(str(words) for words in rows["reason"].dropna() if words)),
         "best_q": np.nan if best is None else float(best["q"]),
         "best_gain": np.nan if best is None else float(best["gain_excess"]),
+        "doubtful": bool(found.any() and counted.empty),
+        "lost": pack_floats(_layers(cell, rows.assign(lost=lost_in(rows)), "lost")),
         **{name: pack_floats(_layers(cell, rows, name)) for name in _BY_LAYER},
     }
+
+
+def _least(rows: pd.DataFrame) -> pd.Series | None:
+    """The row with the smallest q; None of none."""
+    return rows.iloc[int(rows["q"].to_numpy().argmin())] if len(rows) else None
 
 
 def _layers(cell: ShownCell, rows: pd.DataFrame, name: str) -> FloatArray:

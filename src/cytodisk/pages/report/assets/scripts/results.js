@@ -25,9 +25,10 @@
     return found;
   };
 
-  const strongest = ({ links }) => links.reduce((best, link) => ((link.best_q ?? 1) < (best.best_q ?? 1) ? link : best), links[0]);
+  const rank = ({ best_q: q, doubtful }) => (q ?? 1) + (doubtful ? 1 : 0);
+  const strongest = ({ links }) => links.reduce((best, link) => (rank(link) < rank(best) ? link : best), links[0]);
 
-  // Gain by layer, from the edge in; filled: q < 0.05; dotted: without what geometry gives.
+  // Gain by layer, from the edge in; filled: q < 0.05 and counted; dotted: without what geometry gives.
   const drawGain = () => {
     const found = prediction();
     const ways = bothWays(found);
@@ -43,12 +44,12 @@
       page.chartLine(chart, [-0.5, layers - 0.5], [0, 0], { stroke: "#999999" });
       const chosen = page.state.layer;
       chart.marks.prepend(svg("rect", { x: chart.toX(chosen - 0.5), y: chart.top, width: chart.toX(chosen + 0.5) - chart.toX(chosen - 0.5), height: chart.bottom - chart.top, fill: "#eef4fb" }));
-      ways.forEach(({ gain_excess: gain, gain_excess_partial: partial, q }, k) => {
-        const colour = [BLUE, ORANGE][k];
+      ways.forEach(({ gain_excess: gain, gain_excess_partial: partial, q, lost }, k) => {
+        const colour = [ORANGE, BLUE][k];
         page.chartLine(chart, x, [...partial.values], { stroke: colour, "stroke-dasharray": "1.5 3" });
         page.chartLine(chart, x, [...gain.values], { stroke: colour, "stroke-width": 2, "stroke-dasharray": k ? "6 4" : null });
         x.forEach((layer) => {
-          const fill = q.values[layer] < 0.05 ? colour : "white";
+          const fill = q.values[layer] < 0.05 && !lost.values[layer] ? colour : "white";
           page.chartDot(chart, layer, gain.values[layer], { r: 4.5, fill, stroke: colour, "stroke-width": 1.5 });
         });
       });
@@ -59,11 +60,12 @@
       return page.make("span", {}, mark, ` ${found.names[source]} → ${found.names[target]}${given ? ` (given ${given})` : ""}`);
     });
     const partial = ways.some(({ gain_excess_partial: one }) => one.values.some(Number.isFinite));
-    byId("gain-key").replaceChildren(...keys, page.make("span", {}, `filled: q < 0.05${partial ? "; dotted: without what geometry alone would give" : ""}`));
+    byId("gain-key").replaceChildren(...keys, page.make("span", {}, `filled: q < 0.05${ways.some(({ lost }) => lost.values.some((one) => one > 0)) ? ", and counted" : ""}${partial ? "; dotted: without what geometry alone would give" : ""}`));
     const layer = page.state.layer;
-    const numbers = ways.map(({ source, target, gain_excess: gain, q, effect }) => {
+    const numbers = ways.map(({ source, target, gain_excess: gain, q, effect, lost }) => {
       const more = effect.values[layer] > 0 ? "more" : "less";
-      const sign = q.values[layer] < 0.05 ? `; more ${found.names[source]} is followed by ${more} ${found.names[target]}` : "";
+      const means = lost.values[layer] ? page.notCounted : `more ${found.names[source]} is followed by ${more} ${found.names[target]}`;
+      const sign = q.values[layer] < 0.05 ? `; ${means}` : "";
       return `${found.names[source]} → ${found.names[target]} in layer ${layer}: gain ${page.digits(gain.values[layer])}, q ${page.chance(q.values[layer])}${sign}`;
     });
     write("gain-numbers", `${numbers.join(". ")}.`);
@@ -112,7 +114,7 @@
 
   const waveLayer = (found) => (found.edge ? 0 : found.phase[page.state.layer] ? page.state.layer : found.chosen);
 
-  const isWave = ({ layers }, layer) => layers.some((row) => row.layer === layer && row.p < 0.05);
+  const isWave = ({ layers }, layer) => layers.some((row) => row.layer === layer && row.kind && row.kind !== "none");
 
   const drawKymograph = () => {
     const found = waves();
