@@ -9,13 +9,12 @@ from pathlib import Path
 
 import pandas as pd
 
-from cytodisk.errors import ReadError
 from cytodisk.store.correlation_store import CorrelationFolder, read_correlation
-from cytodisk.store.provenance_file import read_complete
+from cytodisk.store.populations.pooled_folder import PooledFolder, check_batch, check_pooled
 
 
 @dataclass(frozen=True)
-class PooledCorrelation(CorrelationFolder):
+class PooledCorrelation(PooledFolder, CorrelationFolder):
     """Correlations of a batch's movies, pooled over cells and experiments; tables are read when asked for.
 
     Attributes
@@ -37,31 +36,6 @@ class PooledCorrelation(CorrelationFolder):
     def __repr__(self) -> str:
         return f"<PooledCorrelation {self.path}: {len(self.cells)} cells, {', '.join(self.conditions)}>"
 
-    @property
-    def conditions(self) -> tuple[str, ...]:
-        """Conditions that have a pooled curve, the control first."""
-        return tuple(self.pooled["condition"].drop_duplicates())
-
-    @property
-    def sentences(self) -> tuple[str, ...]:
-        """What was found, and what this number of experiments can reach at best."""
-        return tuple(self.settings.get("sentences", ()))
-
-    @property
-    def warnings(self) -> tuple[dict[str, str], ...]:
-        """Reasons to doubt a test: name, finding, consequence, remedy, and the condition that it is about."""
-        return tuple(self.settings.get("warnings", ()))
-
-    @cached_property
-    def studies(self) -> pd.DataFrame:
-        """One row an input of the batch: status, and the reason if it has no correlation."""
-        return self._table("studies")
-
-    @cached_property
-    def cells(self) -> pd.DataFrame:
-        """One row a cell: condition, experiment, status, and the reason if it is left out."""
-        return self._table("cells")
-
     @cached_property
     def curves(self) -> pd.DataFrame:
         """One row a cell, layer and lag."""
@@ -71,11 +45,6 @@ class PooledCorrelation(CorrelationFolder):
     def experiments(self) -> pd.DataFrame:
         """One row a condition, experiment, kind of curve, layer and lag: mean over the experiment's cells."""
         return self._table("experiments")
-
-    @cached_property
-    def pooled(self) -> pd.DataFrame:
-        """One row a condition, kind of curve, layer and lag: mean, interval and test over experiments."""
-        return self._table("pooled")
 
     @cached_property
     def peaks(self) -> pd.DataFrame:
@@ -132,8 +101,7 @@ def open_pooled_correlation(
     [0, 1, 0, 1]
     """
     folder = Path(path)
-    read_complete(folder, "batch")
+    check_batch(folder)
     found = read_correlation(folder, signal, with_, name)
-    if not (found.path / "pooled.parquet").exists():
-        raise ReadError(f"{found.path} holds no pooled correlation: run cytodisk correlate {folder} again")
+    check_pooled(found, folder, "correlation")
     return PooledCorrelation(found.path, found.signal, found.with_, found.name, found.settings)

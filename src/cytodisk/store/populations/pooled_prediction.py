@@ -10,14 +10,12 @@ from typing import Any, ClassVar
 
 import pandas as pd
 
-from cytodisk.errors import ReadError
-from cytodisk.store.derived.derived_folder import DerivedFolder
+from cytodisk.store.populations.pooled_folder import PooledFolder, check_batch, check_pooled
 from cytodisk.store.predictions.prediction_store import read_prediction, titled_prediction
-from cytodisk.store.provenance_file import read_complete
 
 
 @dataclass(frozen=True)
-class PooledPrediction(DerivedFolder):
+class PooledPrediction(PooledFolder):
     """Predictions of a batch's movies, pooled over cells and experiments; tables are read when asked for.
 
     Attributes
@@ -47,31 +45,6 @@ class PooledPrediction(DerivedFolder):
         what = titled_prediction(self.source, self.target, self.name)
         return f"<PooledPrediction {self.path}: {what}, {len(self.cells)} cells>"
 
-    @property
-    def conditions(self) -> tuple[str, ...]:
-        """Conditions that have a pooled gain, the control first."""
-        return tuple(self.pooled["condition"].drop_duplicates())
-
-    @property
-    def sentences(self) -> tuple[str, ...]:
-        """What was found, and what this number of experiments can reach at best."""
-        return tuple(self.settings.get("sentences", ()))
-
-    @property
-    def warnings(self) -> tuple[dict[str, str], ...]:
-        """Reasons to doubt a test: name, finding, consequence, remedy, and the condition that it is about."""
-        return tuple(self.settings.get("warnings", ()))
-
-    @cached_property
-    def studies(self) -> pd.DataFrame:
-        """One row an input of the batch: status, and the reason if nothing could be tested."""
-        return self._table("studies")
-
-    @cached_property
-    def cells(self) -> pd.DataFrame:
-        """One row a cell: condition, experiment, status, and the reason if it is left out."""
-        return self._table("cells")
-
     @cached_property
     def links(self) -> pd.DataFrame:
         """One row a cell, source, target and layer."""
@@ -81,11 +54,6 @@ class PooledPrediction(DerivedFolder):
     def experiments(self) -> pd.DataFrame:
         """One row a condition, experiment, kind, source, target and layer: mean over its cells."""
         return self._table("experiments")
-
-    @cached_property
-    def pooled(self) -> pd.DataFrame:
-        """One row a condition, kind, source, target and layer: mean, interval and test over experiments."""
-        return self._table("pooled")
 
     @cached_property
     def comparisons(self) -> pd.DataFrame | None:
@@ -125,8 +93,7 @@ def open_pooled_prediction(
     >>> found.pooled.query("p_fwer <= 0.05 and score > 0")  # doctest: +SKIP
     """
     folder = Path(path)
-    read_complete(folder, "batch")
+    check_batch(folder)
     found = read_prediction(folder, source, target, name)
-    if not (found.path / "pooled.parquet").exists():
-        raise ReadError(f"{found.path} holds no pooled prediction: run cytodisk predict {folder} again")
+    check_pooled(found, folder, "prediction")
     return PooledPrediction(found.path, found.source, found.target, found.name, found.settings)

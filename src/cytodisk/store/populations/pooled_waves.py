@@ -10,14 +10,12 @@ from typing import Any, ClassVar
 
 import pandas as pd
 
-from cytodisk.errors import ReadError
-from cytodisk.store.derived.derived_folder import DerivedFolder
-from cytodisk.store.provenance_file import read_complete
+from cytodisk.store.populations.pooled_folder import PooledFolder, check_batch, check_pooled
 from cytodisk.store.waves.waves_store import read_waves, waves_title
 
 
 @dataclass(frozen=True)
-class PooledWaves(DerivedFolder):
+class PooledWaves(PooledFolder):
     """Waves of a batch's movies, pooled over cells and experiments; tables are read when asked for.
 
     Attributes
@@ -46,31 +44,6 @@ class PooledWaves(DerivedFolder):
     def __repr__(self) -> str:
         return f"<PooledWaves {self.path}: {waves_title(self.signal, self.name)}, {len(self.cells)} cells>"
 
-    @property
-    def conditions(self) -> tuple[str, ...]:
-        """Conditions that have pooled waves, the control first."""
-        return tuple(self.pooled["condition"].drop_duplicates())
-
-    @property
-    def sentences(self) -> tuple[str, ...]:
-        """What was found, and what this number of experiments can reach at best."""
-        return tuple(self.settings.get("sentences", ()))
-
-    @property
-    def warnings(self) -> tuple[dict[str, str], ...]:
-        """Reasons to doubt a test: name, finding, consequence, remedy, and the condition that it is about."""
-        return tuple(self.settings.get("warnings", ()))
-
-    @cached_property
-    def studies(self) -> pd.DataFrame:
-        """One row an input of the batch: status, and the reason if it has no waves."""
-        return self._table("studies")
-
-    @cached_property
-    def cells(self) -> pd.DataFrame:
-        """One row a cell: condition, experiment, status, and the reason if it is left out."""
-        return self._table("cells")
-
     @cached_property
     def numbers(self) -> pd.DataFrame:
         """One row a cell, number and layer."""
@@ -80,11 +53,6 @@ class PooledWaves(DerivedFolder):
     def experiments(self) -> pd.DataFrame:
         """One row a condition, experiment, number and layer: mean over its cells."""
         return self._table("experiments")
-
-    @cached_property
-    def pooled(self) -> pd.DataFrame:
-        """One row a condition, number and layer: mean and interval over experiments, and test."""
-        return self._table("pooled")
 
     @cached_property
     def comparisons(self) -> pd.DataFrame | None:
@@ -122,8 +90,7 @@ def open_pooled_waves(path: str | os.PathLike[str], signal: str = "velocity", na
     >>> found.pooled.query("number == 'wave_period_s'")  # doctest: +SKIP
     """
     folder = Path(path)
-    read_complete(folder, "batch")
+    check_batch(folder)
     found = read_waves(folder, signal, name)
-    if not (found.path / "pooled.parquet").exists():
-        raise ReadError(f"{found.path} holds no pooled waves: run cytodisk waves {folder} again")
+    check_pooled(found, folder, "waves")
     return PooledWaves(found.path, found.signal, found.name, found.settings)
