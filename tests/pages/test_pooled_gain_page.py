@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from cytodisk.pages.population import pooled_gain_page
 from cytodisk.pages.population.pooled_gain_page import gain_page, shown_links
 from cytodisk.pages.population.pooled_wave_page import wave_page
 from cytodisk.plot.style import SINGLE_COLUMN_MM, WIDE_MM, paper_style
@@ -68,6 +69,15 @@ def test_each_link_has_a_panel_and_dots_only_where_the_source_predicts(gains: Po
     assert ("Rac1 → velocity", [2.5]) in dots  # layer 0 lies on the right
     assert sheet.figure.get_figwidth() * 25.4 == pytest.approx(SINGLE_COLUMN_MM)
     assert SINGLE_COLUMN_MM < WIDE_MM
+
+
+def test_links_without_a_panel_are_said(gains: PooledPrediction, monkeypatch: pytest.MonkeyPatch) -> None:
+    def words() -> list[str]:
+        return [text.get_text() for text in gain_page(gains).figure.texts]
+
+    assert not any("links" in one for one in words())
+    monkeypatch.setattr(pooled_gain_page, "MOST_LINKS", 2)
+    assert "2 of 3 links, with the largest gains; pooled.parquet has all" in words()
 
 
 def test_dots_of_what_may_be_noise_are_hollow(

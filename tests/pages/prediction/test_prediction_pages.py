@@ -8,7 +8,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from cytodisk.errors import ParameterError
+from cytodisk.pages.prediction import prediction_pages
 from cytodisk.pages.prediction.prediction_files import write_prediction_figures
+from cytodisk.plot.prediction.drawn_links import drawn_links
 from cytodisk.runs.predict.predict_study import predict_study
 from cytodisk.runs.qc_flags.one_prediction import UnwrittenPrediction
 from made_study import MadeStudy, made_activity, made_study, predicting_activity
@@ -46,7 +48,11 @@ def test_pages_of_a_pair(study: MadeStudy, drawn: list[Figure]) -> None:
     assert "source earlier by (s)" in texts(lags)
 
 
-def test_pages_of_a_network_with_a_long_name(tmp_path: Path, drawn: list[Figure]) -> None:
+def test_pages_of_a_network_with_a_long_name(
+    tmp_path: Path, drawn: list[Figure], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(prediction_pages, "_MOST_PROFILES", 5)
+    monkeypatch.setattr(prediction_pages, "_MOST_PANELS", 1)
     activity = predicting_activity(1, strength=0.6)
     rac1, rhoa = (activity["mean"].sel(channel=name).to_numpy() for name in ("Rac1", "RhoA"))
     channels = {"Rac1": rac1, LONG: rhoa, "actin": np.roll(rac1, 1, axis=0)}
@@ -59,6 +65,10 @@ def test_pages_of_a_network_with_a_long_name(tmp_path: Path, drawn: list[Figure]
     assert "all others given" in texts(drawn[0])
     assert "“all”" in texts(drawn[0])
     assert "first: Rac1, second: a very …o long" in texts(drawn[1])
+    assert "5 of 6 pairs, with the largest gains; links.parquet has all" in texts(drawn[1])
+    many = len(drawn_links(found.links))
+    assert many > 1
+    assert f"1 of {many} links, with the largest gains; links.parquet has all" in texts(drawn[2])
 
 
 def test_nothing_found_is_said(tmp_path: Path, drawn: list[Figure]) -> None:

@@ -56,8 +56,9 @@ def chance_gains(
     The source is split into what target, neighbours and given signals say of it, of the same frame and
     before, and the rest. Only the rest is shifted, in time and around the cell: the surrogate hangs together
     with all of these as the source does, and its rest keeps its correlations in time and between sectors.
-    How much the rest varies in each sector, and around each frame, stays in its place: where both signals vary
-    more at the front, or in the same minutes, their products scatter more than those of a shifted source.
+    How much the rest varies in each sector, and around each frame, stays in its place: where both signals
+    vary more at the front, or in the same minutes, their products scatter more than those of a source that is
+    shifted as a whole.
     Shifts by less than the past that is tried, to either side, are left out: what is true comes back in them.
     More are not: where few are left, which hang together with each other but not with the source, the source
     is beyond all of them too often.

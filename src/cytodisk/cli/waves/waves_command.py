@@ -15,6 +15,7 @@ from cytodisk.runs.population.pooling.pool_parameters import PoolOptions
 from cytodisk.runs.population.wave_numbers.batch_waves_parameters import BatchWavesParameters
 from cytodisk.runs.run_options import FigureOptions, TableOptions
 from cytodisk.runs.told.flag_words import wave_flag_lines
+from cytodisk.runs.told.speed_words import PERCENT
 from cytodisk.runs.told.wave_lines import earlier_waves, wave_finding_lines, wave_lines
 from cytodisk.runs.waves.wave_run_parameters import WavesParameters
 
@@ -50,7 +51,7 @@ def waves_command(
     console = console_for(quiet)
     there = opened(console, study)
     before = earlier_waves(there, signal, settings)
-    with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
+    with progress_bar(quiet, PERCENT, stopped=NOTHING_CHANGED) as progress:
         found = waves_study(
             there, signal, cells=cell, progress=progress, parameters=settings, **dict(options)
         )

@@ -94,8 +94,13 @@ def gain_page(pooled: PooledPrediction) -> Sheet:
     key = _key(pooled)
     first = heading.height_mm + _LINE * ((len(key) + 1) // 2) + 6.0
     rows = -(-len(links) // columns)
-    sheet = Sheet(first + rows * _STEP - 2.0, width)
+    known = pooled.pooled[["source", "target"]].drop_duplicates().shape[0]
+    high = first + rows * _STEP - 2.0
+    sheet = Sheet(high + _LINE * (known > len(links)), width)
     heading.write(sheet)
+    if known > len(links):
+        words = f"{len(links)} of {known} links, with the largest gains; pooled.parquet has all"
+        sheet.text(LEFT_MM, high + 1.0, words, color="0.3")
     panel = (width - _GAP) / columns - _LEFT
     limits = _limits(pooled, links)
     for number, link in enumerate(links):

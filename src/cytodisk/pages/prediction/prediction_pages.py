@@ -77,7 +77,7 @@ def network_page(one: DrawnPrediction) -> Sheet | None:
 
 def profile_page(one: DrawnPrediction) -> Sheet:
     """How much error is taken away in each layer, both directions, pair by pair."""
-    pairs = one.pairs[:_MOST_PROFILES]
+    pairs = _strongest_pairs(one)
     several = len(one.pairs) > 1
     names = one.names
     what = "who predicts whom, by layer" if several else f"{arrow_words(pairs[0][0], names)}, and back"
@@ -88,14 +88,17 @@ def profile_page(one: DrawnPrediction) -> Sheet:
     first = heading.height_mm + _LINE * (-(-len(key) // 2) + one.lost) + 2.0 + 3.0 * several
     high, gap = (_PROFILE, 0.0) if not several else (_PROFILE_OF_MANY, _PROFILE_GAP)
     step = high + gap
-    sheet = Sheet(first + step * len(pairs) - gap + 12.5, SINGLE_COLUMN_MM)
+    fewer = len(one.pairs) > len(pairs)
+    below = first + step * len(pairs) - gap + 12.5
+    sheet = Sheet(below + _LINE * fewer, SINGLE_COLUMN_MM)
     most = percent(one.links[["gain", "threshold", "gain_partial"]])
     top = min(1.6 * float(np.nanmax(most, initial=1.0)), 100.0)
     heading.write(sheet)
     sheet.key(LEFT_MM, heading.height_mm - 2.0, key, 2, **_KEY_STYLE)
     if one.lost:
-        below = heading.height_mm + _LINE * -(-len(key) // 2) + 0.5
-        sheet.text(LEFT_MM, below, _NOT_COUNTED, color="0.3")
+        sheet.text(LEFT_MM, heading.height_mm + _LINE * -(-len(key) // 2) + 0.5, _NOT_COUNTED, color="0.3")
+    if fewer:
+        sheet.text(LEFT_MM, below + 1.0, _left_out(len(pairs), len(one.pairs), "pairs"), color="0.3")
     for number, both in enumerate(pairs):
         ax = sheet.axes(_LEFT, first + number * step, SINGLE_COLUMN_MM - _LEFT - _RIGHT, high)
         depths = one.movie.depths if both == pairs[-1] else None
@@ -120,6 +123,9 @@ def lags_page(one: DrawnPrediction) -> Sheet | None:
     rows, step = -(-len(panels) // 2), _STEP if len(one.pairs) == 1 else _STEP_WITH_NAMES
     foot = "coefficients for series of standard deviation 1, with 95 % intervals; open: q ≥ 0.05"
     notes = broken_lines(foot.split(" "), " ", SINGLE_COLUMN_MM - 2 * LEFT_MM)
+    links = len(drawn_links(one.links, cell=one.cell))
+    if len(one.pairs) > 1 and links > len(panels):
+        notes.append(_left_out(len(panels), links, "links"))
     below = first + rows * step + 5.5
     sheet = Sheet(below + _LINE * len(notes) - 1.0, SINGLE_COLUMN_MM)
     heading.write(sheet)
@@ -153,13 +159,27 @@ def _panels(one: DrawnPrediction) -> list[tuple[tuple[str, str], int, str]]:
         (there, back) = one.pairs[0]
         sides = ((there, THERE_COLOUR), (back, BACK_COLOUR))
         return [(pair, layer, colour) for layer in one.shown_layers for pair, colour in sides]
+    links = drawn_links(one.links, cell=one.cell)
+    strongest = sorted(links, key=lambda link: (link.doubtful, -link.gain))[:_MOST_PANELS]
     found = []
-    for link in drawn_links(one.links, cell=one.cell):
+    for link in (link for link in links if link in strongest):
         rows = of_pair(one.links, link.pair)
         best = rows[rows["layer"].isin(link.layers)].sort_values("gain")["layer"].iloc[-1]
         colour = MORE_COLOUR if link.effect > 0 else LESS_COLOUR
         found.append((link.pair, int(best), FAINT_COLOUR if link.doubtful else colour))
-    return found[:_MOST_PANELS]
+    return found
+
+
+def _strongest_pairs(one: DrawnPrediction) -> list[tuple[tuple[str, str], tuple[str, str]]]:
+    """Pairs that have a profile, in the order of the table: those with the largest gain."""
+    gains = one.links.groupby(["source", "target"])["gain"].max().fillna(-np.inf).to_dict()
+    largest = {both: max(gains.get(pair, -np.inf) for pair in both) for both in one.pairs}
+    kept = sorted(one.pairs, key=lambda both: -largest[both])[:_MOST_PROFILES]
+    return [both for both in one.pairs if both in kept]
+
+
+def _left_out(shown: int, known: int, what: str) -> str:
+    return f"{shown} of {known} {what}, with the largest gains; links.parquet has all"
 
 
 def _is_sure(links: pd.DataFrame, pair: tuple[str, str], layer: int) -> bool:

@@ -17,6 +17,7 @@ from cytodisk.plot.prediction.link_looks import (
     LESS_COLOUR,
     MORE_COLOUR,
     arrow_words,
+    lost_in,
     of_pair,
     pairs_in,
     percent,
@@ -76,7 +77,8 @@ def draw_link_layers(
     pairs = pairs_in(rows)
     squares = []
     for place, pair in enumerate(pairs):
-        for row in of_pair(rows, pair).to_dict("records"):
+        own = of_pair(rows, pair)
+        for row in own.assign(lost=lost_in(own)).to_dict("records"):
             if not np.isfinite(row["gain"]):
                 continue
             if not row["q"] < ALPHA:
@@ -103,6 +105,6 @@ def _square(row: Mapping[Any, Any], place: int) -> Rectangle:
     side = _LEAST + (_MOST - _LEAST) * np.sqrt(share)
     colour = MORE_COLOUR if row["effect"] > 0 else LESS_COLOUR
     look: Any = {"facecolor": colour, "edgecolor": "none"}
-    if any(row.get(name) in (True, 1) for name in ("geometry", "weaker")):
+    if row["lost"]:
         look = {"facecolor": "none", "edgecolor": FAINT_COLOUR, "linewidth": 0.8}
     return Rectangle((float(row["layer"]) - 0.5 * side, place - 0.5 * side), side, side, **look)
