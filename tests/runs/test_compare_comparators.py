@@ -13,6 +13,7 @@ from cytodisk.errors import MissingPartError, ParameterError
 from cytodisk.runs.compare_windows.laid_frames import registered_frames, spring_frames
 
 METHODS = ("newton", "springs", "registered")
+SPRINGS = {"evenness": 1.0, "line_tension": 20.0}  # not the defaults
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +32,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 def comparison(files: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> cd.Comparison:
     pytest.importorskip("SimpleITK")
     masks, signal = files
-    settings: Any = {"methods": METHODS, "layers": 3, "sectors": 12}
+    settings: Any = {"methods": METHODS, "layers": 3, "sectors": 12, **SPRINGS}
     out = tmp_path_factory.mktemp("compared") / "out"
     return cd.run_compare_windows(masks, out, signal=signal, movie=True, **settings)
 
@@ -55,7 +56,9 @@ def test_activity_is_that_of_the_windows(comparison: cd.Comparison, files: tuple
     movie = cd.map_movie(masks)
     depth = float(comparison.cells.set_index("method").loc["springs", "depth_px"])
     laid = {
-        "springs": spring_frames(movie, cd.SpringGrid(3, 12, depth)),
+        "springs": spring_frames(
+            movie, cd.SpringGrid(3, 12, depth, SPRINGS["evenness"]), line_tension=SPRINGS["line_tension"]
+        ),
         "registered": registered_frames(movie, cd.polar_windows(3, 12)),
     }
     for method, frames in laid.items():
@@ -64,6 +67,17 @@ def test_activity_is_that_of_the_windows(comparison: cd.Comparison, files: tuple
             "channel", "layer", "sector"
         )
         np.testing.assert_allclose(comparison.activity(0, method).isel(time=3), expected, rtol=1e-9)
+
+
+def test_springs_of_cells_are_as_strong_as_asked_for(tmp_path: Path) -> None:
+    mask = cd.simulate.dumbbell(12, neck_width=4)
+    tifffile.imwrite(tmp_path / "mask.tif", mask.astype("uint8"))
+    settings: Any = {"methods": ("springs",), "layers": 3, "sectors": 12, "evenness": 0.0}
+    found = cd.run_compare_windows(tmp_path / "mask.tif", tmp_path / "out", **settings)
+    for evenness, same in ((0.0, True), (4.0, False)):
+        windows = cd.spring_windows(mask, 3, 12, evenness=evenness)
+        expected = cd.measures_by_layer(windows)["area_cv"].to_numpy()
+        assert np.allclose(found.layers["area_cv"], expected, rtol=0.02) is same
 
 
 def test_a_cell_that_only_moves_keeps_its_windows(files: tuple[Path, Path]) -> None:

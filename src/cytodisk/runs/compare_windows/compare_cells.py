@@ -26,6 +26,7 @@ from cytodisk.windows.grid_parameters import EdgeWindowParameters, RingWindowPar
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.polar_windows import polar_windows
 from cytodisk.windows.ring_windows import ring_windows
+from cytodisk.windows.springs.spring_parameters import SpringWindowParameters
 from cytodisk.windows.springs.spring_windows import spring_windows
 
 
@@ -102,7 +103,7 @@ class _Methods(CellMethods):
         if method == "edge":
             return edge_windows(mask, **dict(chosen.part(EdgeWindowParameters))), None
         if method == "springs":
-            return spring_windows(mask, **dict(chosen.part(EdgeWindowParameters))), None
+            return spring_windows(mask, **dict(chosen.part(SpringWindowParameters))), None
         if method == "rings":
             return ring_windows(mask, **dict(chosen.part(RingWindowParameters))), None
         disk = map_to_disk(mask, method=method, **dict(chosen.part(MeshParameters)))

@@ -24,6 +24,7 @@ from cytodisk.runs.compare_windows.laid_frames import lay_frames
 from cytodisk.windows.edge_windows import CellEdge, EdgeGrid
 from cytodisk.windows.polar_windows import polar_windows
 from cytodisk.windows.ring_windows import RingGrid
+from cytodisk.windows.springs.spring_parameters import LineTensionParameters
 from cytodisk.windows.springs.spring_windows import SpringGrid
 
 _SUMMED = ("invalid_maps", "flipped", "lost_px", "empty_windows")
@@ -109,7 +110,9 @@ def window_grid(followed: FollowedCell) -> Grid:
     depth = parameters.depth_px
     if depth is None:
         depth = CellEdge.of(movie[int(np.argmax(movie.mapped))]).greatest_depth / layers
-    return (SpringGrid if followed.method == "springs" else EdgeGrid)(layers, sectors, depth)
+    if followed.method == "springs":
+        return SpringGrid(layers, sectors, depth, parameters.evenness)
+    return EdgeGrid(layers, sectors, depth)
 
 
 def usable(masks: Iterable[Any], holes: Holes = "fill") -> int:
@@ -149,7 +152,8 @@ def _sample_frames(
         known = load_image(signal, first + frame)
         return None if isinstance(known, ReadError) else known
 
-    for laid in lay_frames(followed.method, movie, grid):
+    springs = dict(followed.parameters.part(LineTensionParameters))
+    for laid in lay_frames(followed.method, movie, grid, **springs):
         tables.put(laid.frame, window_arrays(laid.windows, image(laid.frame), nan=followed.parameters.nan))
         disk = laid.disk if followed.method in ON_A_MAP else None
         frames.append(windows_row(laid.windows, disk) | laid.shares)

@@ -15,8 +15,9 @@ from cytodisk.parameters import parameter
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
 from cytodisk.scale_parameters import PixelSizeParameters
-from cytodisk.windows.grid_parameters import EdgeGridParameters, GridParameters
+from cytodisk.windows.grid_parameters import GridParameters
 from cytodisk.windows.rings.nucleus_ring_parameters import InterpolatedRingParameters
+from cytodisk.windows.springs.spring_parameters import LineTensionParameters, SpringGridParameters
 
 WindowMethod: TypeAlias = Literal[
     "newton", "newton-triangles", "harmonic", "advection", "edge", "springs", "rings"
@@ -70,7 +71,7 @@ def once_each(methods: tuple[Method, ...]) -> tuple[Method, ...]:
     return methods
 
 
-class ComparedParameters(EdgeGridParameters):
+class ComparedParameters(SpringGridParameters):
     """What comparisons of cells and of movies share."""
 
     fault: ClassVar[type[CytodiskError]] = ParameterError
@@ -125,7 +126,7 @@ class CompareWindowsParameters(
         return methods
 
 
-class CompareMovieParameters(ComparedParameters, FollowedCellParameters):
+class CompareMovieParameters(ComparedParameters, LineTensionParameters, FollowedCellParameters):
     """What decides the result of `cytodisk compare-windows --movie`, beside the input files."""
 
     methods: tuple[MovieMethod, ...] = parameter(

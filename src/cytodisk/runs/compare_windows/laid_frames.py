@@ -42,7 +42,8 @@ class LaidFrame:
     shares: dict[str, float] = field(default_factory=dict)
 
 
-def lay_frames(method: str, movie: DiskMovie, grid: Grid) -> Iterator[LaidFrame]:
+@takes(LineTensionParameters)
+def lay_frames(method: str, movie: DiskMovie, grid: Grid, **settings: float) -> Iterator[LaidFrame]:
     """Windows of a method on each frame that has a cell.
 
     Parameters
@@ -51,13 +52,15 @@ def lay_frames(method: str, movie: DiskMovie, grid: Grid) -> Iterator[LaidFrame]
     movie : DiskMovie
     grid : Grid
         Of the method.
+    **settings
+        See `LineTensionParameters`; only windows with springs need them.
 
     Yields
     ------
     LaidFrame
     """
     if method == "springs" and isinstance(grid, SpringGrid):
-        yield from spring_frames(movie, grid)
+        yield from spring_frames(movie, grid, **settings)
     elif method == "registered" and isinstance(grid, PolarGrid):
         yield from registered_frames(movie, grid)
     else:

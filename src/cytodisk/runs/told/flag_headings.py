@@ -8,7 +8,8 @@ GROUPS = {
     "What the files hold": "pixel-size frame-interval channels movie kind label fragments holes link tracks "
     "axes signal-axes scene z mask-channel signal-channels nuclei-kind nuclei-axes nuclei-channel",
     "Nuclei": "several missing nucleus-radius",
-    "Windows": "layers sectors nucleus-layers points harmonics depth-um depth-px spacing align nan methods",
+    "Windows": "layers sectors nucleus-layers points harmonics depth-um depth-px spacing align nan methods "
+    "evenness line-tension",
     "Map of each cell": "method shape-weight edge-length",
     "Motion of the edge and the inside": "tracker tension smoothness-px2 registration renew-every inertia "
     "interior fade-um",
