@@ -5,17 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from cytodisk.errors import ParameterError
 from cytodisk.pages.correlation_pages import curves_page, events_page, maps_page, pairs_page, peaks_page
 from cytodisk.pages.drawn_correlation import DrawnCorrelation
 from cytodisk.pages.drawn_movie import DrawnMovie
-from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
+from cytodisk.pages.figure_formats import check_cell, chosen_formats, save_pages
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.style import paper_style
 from cytodisk.store.correlation_store import Correlation
-from cytodisk.store.figures_folder import drawing
 from cytodisk.store.study import Study
-from cytodisk.store.study_folder import part_key
 
 _PAGES: dict[str, Callable[[DrawnCorrelation], Sheet | None]] = {
     "curves": curves_page,
@@ -89,27 +85,8 @@ def write_correlation_figures(
     ['cell_00000_curves.png', 'cell_00000_maps.png', 'cell_00000_peaks.png', 'cell_00000_events.png']
     """
     chosen = chosen_formats(formats)
-    _check_cell(correlation, cell)
+    check_cell(correlation.cells, cell, correlation.path, "correlation")
     one = DrawnCorrelation(DrawnMovie(study, cell), correlation)
-    report = progress or (lambda done, whole: None)
-    paths = []
-    stems = {what: f"cell_{part_key(cell)}_{what}" for what in _PAGES}
-    names = [f"{stem}.{kind}" for stem in stems.values() for kind in chosen]
-    with drawing(study.path, *names, of=correlation.path) as folder:
-        for done, (what, draw) in enumerate(_PAGES.items()):
-            report(done, len(_PAGES))
-            with paper_style():
-                sheet = draw(one)
-                if sheet is not None:
-                    paths += save_in_formats(sheet, folder, stems[what], chosen)
-    report(len(_PAGES), len(_PAGES))
-    return paths
-
-
-def _check_cell(correlation: Correlation, cell: int) -> None:
-    rows = correlation.cells[correlation.cells["cell"] == cell]
-    if rows.empty:
-        there = sorted(int(number) for number in correlation.cells["cell"])
-        raise ParameterError(f"cell {cell} is not in {correlation.path}: it has {there}")
-    if rows["status"].iloc[0] != "ok":
-        raise ParameterError(f"cell {cell} has no correlation to draw: {rows['reason'].iloc[0]}")
+    return save_pages(
+        one, _PAGES, cell=cell, study=study.path, of=correlation.path, formats=chosen, progress=progress
+    )

@@ -5,17 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from cytodisk.errors import ParameterError
 from cytodisk.pages.drawn_movie import DrawnMovie
-from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
+from cytodisk.pages.figure_formats import check_cell, chosen_formats, save_pages
 from cytodisk.pages.prediction.drawn_prediction import DrawnPrediction
 from cytodisk.pages.prediction.prediction_pages import lags_page, network_page, profile_page
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.style import paper_style
-from cytodisk.store.figures_folder import drawing
 from cytodisk.store.predictions.prediction_store import Prediction
 from cytodisk.store.study import Study
-from cytodisk.store.study_folder import part_key
 
 _PAGES: dict[str, Callable[[DrawnPrediction], Sheet | None]] = {
     "network": network_page,
@@ -81,27 +77,8 @@ def write_prediction_figures(
     ['cell_00000_network.png', 'cell_00000_profile.png', 'cell_00000_lags.png']
     """
     chosen = chosen_formats(formats)
-    _check_cell(prediction, cell)
+    check_cell(prediction.cells, cell, prediction.path, "prediction")
     one = DrawnPrediction(DrawnMovie(study, cell), prediction)
-    report = progress or (lambda done, whole: None)
-    paths = []
-    stems = {what: f"cell_{part_key(cell)}_{what}" for what in _PAGES}
-    names = [f"{stem}.{kind}" for stem in stems.values() for kind in chosen]
-    with drawing(study.path, *names, of=prediction.path) as folder:
-        for done, (what, draw) in enumerate(_PAGES.items()):
-            report(done, len(_PAGES))
-            with paper_style():
-                sheet = draw(one)
-                if sheet is not None:
-                    paths += save_in_formats(sheet, folder, stems[what], chosen)
-    report(len(_PAGES), len(_PAGES))
-    return paths
-
-
-def _check_cell(prediction: Prediction, cell: int) -> None:
-    rows = prediction.cells[prediction.cells["cell"] == cell]
-    if rows.empty:
-        there = sorted(int(number) for number in prediction.cells["cell"])
-        raise ParameterError(f"cell {cell} is not in {prediction.path}: it has {there}")
-    if rows["status"].iloc[0] != "ok":
-        raise ParameterError(f"cell {cell} has no prediction to draw: {rows['reason'].iloc[0]}")
+    return save_pages(
+        one, _PAGES, cell=cell, study=study.path, of=prediction.path, formats=chosen, progress=progress
+    )

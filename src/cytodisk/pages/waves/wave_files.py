@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from cytodisk.errors import ParameterError
 from cytodisk.pages.drawn_movie import DrawnMovie
-from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
+from cytodisk.pages.figure_formats import check_cell, chosen_formats, save_pages
 from cytodisk.pages.sheet import Sheet
 from cytodisk.pages.waves.drawn_waves import DrawnWaves
 from cytodisk.pages.waves.wave_pages import depths_page, kymograph_page, phase_page, spectrum_page
-from cytodisk.plot.style import paper_style
-from cytodisk.store.figures_folder import drawing
 from cytodisk.store.study import Study
-from cytodisk.store.study_folder import part_key
 from cytodisk.store.waves.waves_store import Waves
 
 _PAGES: dict[str, Callable[[DrawnWaves], Sheet | None]] = {
@@ -81,27 +77,8 @@ def write_wave_figures(
     ['cell_00000_kymograph.png', 'cell_00000_spectrum.png']
     """
     chosen = chosen_formats(formats)
-    _check_cell(waves, cell)
+    check_cell(waves.cells, cell, waves.path, "waves")
     one = DrawnWaves(DrawnMovie(study, cell), waves)
-    report = progress or (lambda done, whole: None)
-    paths = []
-    stems = {what: f"cell_{part_key(cell)}_{what}" for what in _PAGES}
-    names = [f"{stem}.{kind}" for stem in stems.values() for kind in chosen]
-    with drawing(study.path, *names, of=waves.path) as folder:
-        for done, (what, draw) in enumerate(_PAGES.items()):
-            report(done, len(_PAGES))
-            with paper_style():
-                sheet = draw(one)
-                if sheet is not None:
-                    paths += save_in_formats(sheet, folder, stems[what], chosen)
-    report(len(_PAGES), len(_PAGES))
-    return paths
-
-
-def _check_cell(waves: Waves, cell: int) -> None:
-    rows = waves.cells[waves.cells["cell"] == cell]
-    if rows.empty:
-        there = sorted(int(number) for number in waves.cells["cell"])
-        raise ParameterError(f"cell {cell} is not in {waves.path}: it has {there}")
-    if rows["status"].iloc[0] != "ok":
-        raise ParameterError(f"cell {cell} has no waves to draw: {rows['reason'].iloc[0]}")
+    return save_pages(
+        one, _PAGES, cell=cell, study=study.path, of=waves.path, formats=chosen, progress=progress
+    )
