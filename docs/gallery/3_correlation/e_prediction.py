@@ -38,8 +38,8 @@ print(f"gain of layer 0:        {forth['gain'][0]:.2f}, back {back['gain'][0]:.2
 # one to three frames after a bright signal, and then goes back to where it rests.
 figure, (left, right) = plt.subplots(1, 2, figsize=(7, 2.8), layout="constrained")
 for found, label, colour in (
-    (forth, "signal → edge", "#0072B2"),
-    (back, "edge → signal", "#D55E00"),
+    (forth, "signal → edge", "#D55E00"),
+    (back, "edge → signal", "#0072B2"),
 ):
     left.plot(found["layer"], found["gain"], "o-", color=colour, label=label)
     left.plot(found["layer"], found["threshold"], ":", color=colour)
@@ -52,13 +52,13 @@ right.vlines(
     outer["lag"] * truth.frame_interval_s,
     scale * outer["coefficient_low"],
     scale * outer["coefficient_high"],
-    color="#0072B2",
+    color="#D55E00",
 )
 right.plot(
     outer["lag"] * truth.frame_interval_s,
     scale * outer["coefficient"],
     "o",
-    color="#0072B2",
+    color="#D55E00",
 )
 right.axhline(0, color="0.6", linewidth=0.6)
 right.set(xlabel="signal earlier by (s)", ylabel="coefficient (sd per sd)")
