@@ -45,3 +45,28 @@ def jitters(row: Any) -> bool:
 def is_of_velocity(link: Any) -> bool:
     """Whether source or target of a link is a velocity of the edge."""
     return link["source"] in VELOCITIES or link["target"] in VELOCITIES
+
+
+def effect_words(source: str, target: str, effect: float, turns: int = 0) -> str:
+    """Whether more source is followed by more or less target, as "more Rac1 is followed by protrusion".
+
+    Parameters
+    ----------
+    source, target : str
+    effect : float
+    turns : int
+        The sign at first, where it changes with the lag; else 0.
+    """
+    more = (turns or effect) > 0
+    then = f", later by {_what_follows(target, not more)}" if turns else ""
+    return f"{_begin(source)} is followed by {_what_follows(target, more)}{then}"
+
+
+def _begin(source: str) -> str:
+    return "protrusion" if source in VELOCITIES else f"more {signal_words(source)}"
+
+
+def _what_follows(target: str, more: bool) -> str:
+    if target in VELOCITIES:
+        return "protrusion" if more else "retraction"
+    return f"{'more' if more else 'less'} {signal_words(target)}"

@@ -5,8 +5,8 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from cytodisk.runs.findings.prediction_finding import effect_words, pooled_finding, prediction_finding
-from cytodisk.runs.link_words import less_error, prediction_name, signal_words
+from cytodisk.runs.findings.prediction_finding import pooled_finding, prediction_finding
+from cytodisk.runs.link_words import effect_words, less_error, prediction_name, signal_words
 from cytodisk.runs.predict.prediction_verdict import directions
 from cytodisk.runs.qc_flags.one_prediction import UnwrittenPrediction, with_one_prediction
 from cytodisk.runs.qc_flags.study_flags import prediction_flags_of
@@ -39,8 +39,10 @@ def found_with(study: MadeStudy, rows: list[dict[str, Any]], **more: Any) -> Unw
     own = {name: more.pop(name) for name in list(more) if name in cell}
     names = more.pop("names", PAIR)
     links = pd.DataFrame(rows)
+    keys = {name: links[name] for name in ("cell", "source", "target", "layer")}
+    lags = more.pop("lags", pd.DataFrame(keys).assign(lag=1, coefficient=0.2, low=0.1, high=0.3))
     pooled = links.assign(cells=1)
-    tables = {"links": links, "cells": pd.DataFrame([cell | own]), "pooled": pooled}
+    tables = {"links": links, "cells": pd.DataFrame([cell | own]), "pooled": pooled, "lags": lags}
     return UnwrittenPrediction(study.path, *names, "", settings | more, tables)
 
 
@@ -129,7 +131,9 @@ def test_several_cells_are_told_together(study: MadeStudy, monkeypatch: pytest.M
     monkeypatch.setattr("cytodisk.runs.qc_flags.study_flags.run_flags", lambda study: [])
     found = found_with(study, pair(link(*PAIR, 0, 0.01)))
     two = {name: pd.concat([table, table.assign(cell=1)]) for name, table in found.tables.items()}
-    both = UnwrittenPrediction(study.path, *PAIR, "", found.settings, two | {"pooled": found.pooled})
+    both = UnwrittenPrediction(
+        study.path, *PAIR, "", found.settings, two | {"pooled": found.pooled, "lags": found.lags}
+    )
     told = pooled_finding(study, both)
     assert told is not None
     assert told.words.startswith(
@@ -159,6 +163,29 @@ def test_words() -> None:
     assert effect_words("velocity", "Rac1", -0.1) == "protrusion is followed by less Rac1"
     assert effect_words("Rac1", "velocity", -0.1) == "more Rac1 is followed by retraction"
     assert effect_words("Rac1", "RhoA", 0.1) == "more Rac1 is followed by more RhoA"
+    turned = effect_words("velocity", "Rac1", 0.1, turns=-1)
+    assert turned == "protrusion is followed by less Rac1, later by more Rac1"
+
+
+@pytest.mark.parametrize(
+    ("coefficients", "words"),
+    [
+        ((-0.15, 0.16), "more Rac1 is followed by retraction, later by protrusion"),
+        ((0.15, -0.08), "more Rac1 is followed by protrusion, later by retraction"),
+        ((0.15, -0.02), "more Rac1 is followed by protrusion"),
+    ],
+)
+def test_a_sign_that_changes_with_the_lag_is_told(
+    study: MadeStudy, coefficients: tuple[float, float], words: str
+) -> None:
+    lags = pd.DataFrame({"lag": [1, 2], "coefficient": coefficients})
+    lags = lags.assign(cell=0, source="Rac1", target="velocity", layer=0)
+    lags = lags.assign(low=lags["coefficient"] - 0.01, high=lags["coefficient"] + 0.01)
+    found = found_with(study, pair(link(*PAIR, 0, 0.002)), lags=lags)
+    told = prediction_finding(study, found, 0)
+    assert told is not None
+    assert told.sentences[0].endswith(f"; {words}.")
+    assert any(f"; {words}; without geometry" in line for line in prediction_lines(found, study))
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from wave_studies import SeriesStudy, series_study
 
 import cytodisk as cd
 from cytodisk.runs.findings.finding import Finding
+from cytodisk.runs.findings.wave_words import waves_around
 from cytodisk.runs.findings.waves_finding import waves_finding, waves_summary
 from cytodisk.runs.qc_flags.one_of_waves import with_waves
 from cytodisk.runs.qc_flags.study_flags import wave_flags_of
@@ -207,3 +208,14 @@ def test_layers_are_listed(study: SeriesStudy) -> None:
     assert lines[1].startswith(
         "  layer 0 (outermost): rotating, 2 waves around the cell, 0.12 µm/s clockwise"
     )
+    assert "in doubt" not in lines[1]
+
+
+def test_what_speaks_against_a_layer_is_listed(study: SeriesStudy) -> None:
+    weak = {"layer": 0, "q": 0.13, "p_partial": 0.11, "period": 60.0, "longest_period": 60.0}
+    line = list(wave_lines(made(weak, signal="Rac1"), study))[1]
+    assert line.endswith(
+        "q = 0.13; in doubt: one of many layers (q), few periods, "
+        "waves of the cell's motion (p = 0.11 without it)"
+    )
+    assert waves_around(0) == "all around at once"

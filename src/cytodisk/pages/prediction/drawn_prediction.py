@@ -14,7 +14,7 @@ from cytodisk.pages.settings_words import detrending, scope_words
 from cytodisk.pages.sheet import BOLD_MM, broken_lines
 from cytodisk.plot.layer_looks import layer_word, shown_layers
 from cytodisk.plot.prediction.link_looks import lost_in, pairs_in
-from cytodisk.runs.channel_names import shortened
+from cytodisk.runs.channel_names import VELOCITIES, shortened, shown_name
 from cytodisk.runs.link_words import signal_words
 from cytodisk.store.predictions.prediction_store import Prediction
 
@@ -44,7 +44,8 @@ class DrawnPrediction:
         """What signals are called in pictures."""
         links = self.prediction.links
         known = {*self.prediction.signals, *links["source"], *links["target"]}
-        return {name: shortened(signal_words(name), _LONGEST_NAME) for name in known}
+        words = {name: signal_words(name) if name in VELOCITIES else shown_name(name) for name in known}
+        return {name: shortened(shown, _LONGEST_NAME) for name, shown in words.items()}
 
     @cached_property
     def links(self) -> pd.DataFrame:

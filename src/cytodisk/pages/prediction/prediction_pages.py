@@ -34,6 +34,7 @@ _LEFT, _RIGHT = 16.0, 4.0  # mm
 _PROFILE, _PROFILE_OF_MANY, _PROFILE_GAP = 36.0, 24.0, 7.0  # mm
 _MOST_PROFILES = 6
 _PANEL, _PANEL_HEIGHT, _PANEL_GAP = 28.0, 17.0, 10.0  # mm
+_PANEL_LETTERS = 21  # that have room above a panel
 _STEP, _STEP_WITH_NAMES = 25.0, 29.0  # mm
 _MOST_PANELS = 8
 _NETWORK, _NETWORK_OF_TWO = 46.0, 22.0  # mm
@@ -119,8 +120,11 @@ def lags_page(one: DrawnPrediction) -> Sheet | None:
     if lags.empty or not panels:
         return None
     heading = one.heading(SINGLE_COLUMN_MM, "which past of the source counts")
-    first = heading.height_mm + 4.0
-    rows, step = -(-len(panels) // 2), _STEP if len(one.pairs) == 1 else _STEP_WITH_NAMES
+    names = {pair: _panel_title(arrow_words(pair, one.names)) for pair, _, _ in panels}
+    broken = _LINE * any("\n" in words for words in names.values())
+    several = len(one.pairs) > 1
+    first = heading.height_mm + 4.0 + broken
+    rows, step = -(-len(panels) // 2), _STEP_WITH_NAMES + broken if several else _STEP
     foot = "coefficients for series of standard deviation 1, with 95 % intervals; open: q ≥ 0.05"
     notes = broken_lines(foot.split(" "), " ", SINGLE_COLUMN_MM - 2 * LEFT_MM)
     links = len(drawn_links(one.links, cell=one.cell))
@@ -135,8 +139,8 @@ def lags_page(one: DrawnPrediction) -> Sheet | None:
         ax = sheet.axes(left, first + row * step, _PANEL, _PANEL_HEIGHT)
         own = lags[(lags["source"] == pair[0]) & (lags["target"] == pair[1])]
         title = one.layer_name(layer)
-        if number < 2 or len(one.pairs) > 1:
-            title = f"{arrow_words(pair, one.names)}\n{title}"
+        if number < 2 or several:
+            title = f"{names[pair]}\n{title}"
         ax.set_title(title, loc="left", y=1.0, pad=2.0, parse_math=False, linespacing=1.05)
         if own.empty:
             ax.set_axis_off()
@@ -180,6 +184,11 @@ def _strongest_pairs(one: DrawnPrediction) -> list[tuple[tuple[str, str], tuple[
 
 def _left_out(shown: int, known: int, what: str) -> str:
     return f"{shown} of {known} {what}, with the largest gains; links.parquet has all"
+
+
+def _panel_title(words: str) -> str:
+    """Source and target in two lines where one is wider than a panel."""
+    return words if len(words) <= _PANEL_LETTERS else words.replace(" → ", "\n→ ", 1)
 
 
 def _is_sure(links: pd.DataFrame, pair: tuple[str, str], layer: int) -> bool:

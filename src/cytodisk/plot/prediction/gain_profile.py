@@ -153,7 +153,7 @@ def gain_key(
     if chance:
         look: Any = {"marker": "o", "markersize": 3.5, "markerfacecolor": "white"}
         handles.append(Line2D([], [], label="open: q ≥ 0.05", **grey, **look))
-        handles.append(Patch(facecolor="0.5", alpha=2 * _BAND, label="95 % of shifted sources"))
+        handles.append(Patch(facecolor="0.5", alpha=2 * _BAND, label="95 % of chance"))
     if partial:
         handles.append(Line2D([], [], color="0.35", label=partial, **PARTIAL_LOOK))
     if lost:

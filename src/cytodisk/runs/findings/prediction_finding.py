@@ -9,12 +9,11 @@ from typing import Any
 import pandas as pd
 
 from cytodisk.number_words import counted
-from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.correlate.lag_words import time_apart
 from cytodisk.runs.findings.doubt_words import doubt_words
 from cytodisk.runs.findings.finding import Finding, capital, listed
 from cytodisk.runs.findings.layer_names import layer_name, numbers_words
-from cytodisk.runs.link_words import less_error, signal_words
+from cytodisk.runs.link_words import effect_words, less_error, signal_words
 from cytodisk.runs.partial_words import SIGNIFICANT
 from cytodisk.runs.predict.prediction_verdict import (
     JITTER,
@@ -132,17 +131,6 @@ def _mostly_weaker(ways: list[Direction]) -> bool:
     return 2 * sum(some) >= len(some) > 0
 
 
-def effect_words(source: str, target: str, effect: float) -> str:
-    """Whether more source is followed by more or less target, as "more Rac1 is followed by protrusion"."""
-    more = effect > 0
-    if source in VELOCITIES:
-        return f"protrusion is followed by {'more' if more else 'less'} {signal_words(target)}"
-    what = f"{'more' if more else 'less'} {signal_words(target)}"
-    if target in VELOCITIES:
-        what = "protrusion" if more else "retraction"
-    return f"more {signal_words(source)} is followed by {what}"
-
-
 def _pair(study: Study, found: Prediction, ways: list[Direction]) -> list[str]:
     there, back = ways
     first = _direction(study, there)
@@ -182,7 +170,8 @@ def _numbers(study: Study, link: JudgedLink) -> str:
     partial = row["gain_partial"]
     left = f"{less_error(max(partial, 0.0)).removesuffix(' less error')} without geometry, "
     words = f"{less_error(row['gain'])} with its past {past} ({left if partial == partial else ''}"
-    return f"{words}q = {row['q']:.2g}); {effect_words(row['source'], row['target'], row['effect'])}"
+    sign = effect_words(row["source"], row["target"], row["effect"], link.turns)
+    return f"{words}q = {row['q']:.2g}); {sign}"
 
 
 def _left(link: JudgedLink) -> str:
@@ -232,7 +221,7 @@ def _network(study: Study, found: Prediction, ways: list[Direction]) -> list[str
 def _link(way: Direction) -> str:
     best = strongest(way.clear).row
     layers = numbers_words("layer", [one.layer for one in way.clear])
-    words = effect_words(way.source, way.target, best["effect"])
+    words = effect_words(way.source, way.target, best["effect"], strongest(way.clear).turns)
     return f"{_arrow(way)} ({layers}, {less_error(best['gain'])}, q = {best['q']:.2g}; {words})"
 
 

@@ -13,7 +13,9 @@ _SECOND_DIGITS = 2
 
 
 def waves_around(mode: float) -> str:
-    """As "2 waves around the cell"."""
+    """As "2 waves around the cell", or "all around at once" for none."""
+    if mode == 0:
+        return "all around at once"
     return f"{counted(int(mode), 'wave')} around the cell"
 
 

@@ -15,6 +15,7 @@ from cytodisk.store.predictions.prediction_store import Prediction
 
 JITTER, GEOMETRY_UNTESTED, WEAKER = "jitter", "geometry not tested", "weaker direction"
 DRIFTING, RESTARTED = "drifting series", "tracking started anew"
+_TURNING = 0.25  # of the larger sum of coefficients of one sign: less of the other is not told
 
 
 @dataclass(frozen=True)
@@ -29,11 +30,14 @@ class JudgedLink:
         What speaks against it, as "jitter".
     lost : bool
         Whether it is not significant without geometry.
+    turns : int
+        Sign of the earliest coefficient that is not 0, if a later one has the other sign; else 0.
     """
 
     row: dict[Any, Any]
     doubts: tuple[str, ...]
     lost: bool
+    turns: int = 0
 
     @property
     def layer(self) -> int:
@@ -107,7 +111,7 @@ def directions(found: Prediction, cell: int) -> list[Direction]:
     parts = []
     for (source, target), rows in links.groupby(["source", "target"], sort=False):
         judged = [
-            JudgedLink(link, tuple(_doubts(found, row, link)), bool(link["geometry"]))
+            JudgedLink(link, tuple(_doubts(found, row, link)), bool(link["geometry"]), _turns(found, link))
             for link in rows[rows["q"] < SIGNIFICANT].to_dict("records")
         ]
         given = str(rows["given"].iloc[0] or "")
@@ -118,6 +122,18 @@ def directions(found: Prediction, cell: int) -> list[Direction]:
 def strongest(links: list[JudgedLink]) -> JudgedLink:
     """The link of largest gain, against what shifted sources have on average."""
     return max(links, key=lambda one: float(one.row["gain_excess"]))
+
+
+def _turns(found: Prediction, link: dict[Any, Any]) -> int:
+    """The sign at first of a link whose sign changes with the lag: coefficients whose intervals have no 0."""
+    lags = found.lags
+    for name in ("cell", "source", "target", "layer"):
+        lags = lags[lags[name] == link[name]]
+    sure = lags[lags["low"] * lags["high"] > 0].sort_values("lag")["coefficient"]
+    more, less = float(sure.clip(lower=0.0).sum()), float(-sure.clip(upper=0.0).sum())
+    if min(more, less) <= _TURNING * max(more, less):
+        return 0
+    return 1 if sure.iloc[0] > 0 else -1
 
 
 def _doubts(found: Prediction, row: Any, link: dict[Any, Any]) -> Iterator[str]:

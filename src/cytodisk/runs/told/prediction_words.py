@@ -9,7 +9,7 @@ from cytodisk.number_words import counted
 from cytodisk.runs.told.layer_peak_words import compartment_words
 
 if TYPE_CHECKING:
-    from cytodisk.runs.predict.prediction_verdict import Direction
+    from cytodisk.runs.predict.prediction_verdict import Direction, JudgedLink
     from cytodisk.store.predictions.prediction_store import Prediction
     from cytodisk.store.study import Study
 
@@ -91,19 +91,18 @@ def _direction_lines(found: "Prediction", study: "Study", cell: int, way: "Direc
             yield f"  {_layers(group, borders)}: {_nothing(group)}"
             continue
         for row in group:
-            doubts = judged[row["layer"]].doubts
-            yield f"  {_layers([row], borders)}: {_numbers(row, study, doubts)}"
+            yield f"  {_layers([row], borders)}: {_numbers(judged[row['layer']], study)}"
 
 
-def _numbers(row: dict[Any, Any], study: "Study", doubts: tuple[str, ...]) -> str:
+def _numbers(link: "JudgedLink", study: "Study") -> str:
     from cytodisk.runs.correlate.lag_words import time_apart
-    from cytodisk.runs.findings.prediction_finding import effect_words
-    from cytodisk.runs.link_words import less_error
+    from cytodisk.runs.link_words import effect_words, less_error
 
+    row, doubts = link.row, link.doubts
     interval = study.scale.frame_interval_s or math.nan
     past = time_apart(row["source_order"], row["source_order"] * interval)
     words = f"{less_error(row['gain'])}, q = {row['q']:.2g}, past {past}; "
-    words += effect_words(row["source"], row["target"], row["effect"])
+    words += effect_words(row["source"], row["target"], row["effect"], link.turns)
     if math.isfinite(row["gain_partial"]):
         left = less_error(max(row["gain_partial"], 0.0)).removesuffix(" less error")
         lost = "not " if row["geometry"] else ""

@@ -65,7 +65,21 @@ def _layer_lines(found: "Waves", study: "Study", cell: int) -> Iterator[str]:
             yield f"  {name}: left out, {row['reason']}"
             continue
         what = f"{row['kind']}, {wave_numbers(row, study.scale)}" if row["kind"] != "none" else "no waves"
-        yield f"  {name}: {what}, p = {row['p']:.2g}, q = {row['q']:.2g}"
+        yield f"  {name}: {what}, p = {row['p']:.2g}, q = {row['q']:.2g}{_in_doubt(row)}"
+
+
+def _in_doubt(row: dict[str, Any]) -> str:
+    """What speaks against the wave of a layer, by the names of QC flags."""
+    from cytodisk.analysis.waves.edge_waves import SIGNIFICANT
+    from cytodisk.runs.qc_flags.wave_doubts import NEAR_A_LIMIT
+
+    raised = {
+        "one of many layers (q)": row["q"] > SIGNIFICANT,
+        "few periods": row["period"] * NEAR_A_LIMIT > row["longest_period"],
+        f"waves of the cell's motion (p = {row['p_partial']:.2g} without it)": row["p_partial"] > SIGNIFICANT,
+    }
+    doubts = [name for name, is_raised in raised.items() if is_raised and row["kind"] != "none"]
+    return f"; in doubt: {', '.join(doubts)}" if doubts else ""
 
 
 def earlier_waves(study: "Study", signal: str, now: "WavesParameters") -> str:
