@@ -161,7 +161,7 @@ def test_nothing_is_no_proof(study: SeriesStudy) -> None:
     found = told(study, waves, "area jumps")
     assert found.kind == "nothing"
     assert found.words.startswith(
-        "No waves beyond chance in the edge velocity of cell 0: what is most like one has 2 waves around the "
+        "No waves beyond chance in the edge velocity of cell 0: what is most like one is 2 waves around the "
         "cell, period 95 s (p = 0.3)."
     )
     assert found.words.endswith("QC flags are raised that may hide some: area jumps.")

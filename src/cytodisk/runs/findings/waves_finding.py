@@ -196,7 +196,7 @@ def _nothing(study: Study, found: Waves, row: Any, flagged: Sequence[str]) -> Fi
     scale = study.scale
     what = "the edge velocity" if found.signal in VELOCITIES else _of_what(study, found, pd.DataFrame([row]))
     like = f"{waves_around(row['mode'])}, {period_words(row, scale)}" if math.isfinite(row["mode"]) else ""
-    best = f": what is most like one has {like} ({chance_words(row)})" if like else ""
+    best = f": what is most like one is {like} ({chance_words(row)})" if like else ""
     words = [
         f"No waves beyond chance in {what} of cell {row['cell']}{best}.",
         "Weak or short-lived waves may be missed, so this is no proof that there are none.",

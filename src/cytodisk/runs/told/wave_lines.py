@@ -68,7 +68,7 @@ def _layer_lines(found: "Waves", study: "Study", cell: int) -> Iterator[str]:
         yield f"  {name}: {what}, p = {row['p']:.2g}, q = {row['q']:.2g}{_in_doubt(row)}"
 
 
-def _in_doubt(row: dict[str, Any]) -> str:
+def _in_doubt(row: dict[Any, Any]) -> str:
     """What speaks against the wave of a layer, by the names of QC flags."""
     from cytodisk.analysis.waves.edge_waves import SIGNIFICANT
     from cytodisk.runs.qc_flags.wave_doubts import NEAR_A_LIMIT
