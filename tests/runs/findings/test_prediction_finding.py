@@ -188,6 +188,9 @@ def test_a_sign_that_changes_with_the_lag_is_told(
     assert any(f"; {words}; without geometry" in line for line in prediction_lines(found, study))
 
 
+UNKNOWN = {"gain_partial": float("nan"), "reason": "without geometry: 12 rows are too few"}
+
+
 @pytest.mark.parametrize(
     ("of_link", "of_cell", "name", "words"),
     [
@@ -196,7 +199,12 @@ def test_a_sign_that_changes_with_the_lag_is_told(
         ({"stress": "heavy tails"}, {}, "heavy tails", "Rac1 → velocity"),
         ({"weaker": True}, {}, "weaker direction", "Rac1 → velocity, layer 0"),
         ({"drifting": 0.6}, {"drifting": 0.6}, "drifting series", "60% of the series of Rac1 and velocity"),
-        ({"gain_partial": float("nan")}, {}, "geometry not tested", "too few frames for Rac1 → velocity"),
+        (
+            UNKNOWN,
+            {},
+            "geometry not tested",
+            "Rac1 → velocity, layer 0, without geometry: 12 rows are too few",
+        ),
         ({}, {"geometry_not_tested": "no images"}, "geometry not tested", "no images"),
         ({}, {"frames": 30}, "few frames", "30 frames"),
         ({}, {"status": "refused", "reason": "4 frames"}, "not predicted", "4 frames"),

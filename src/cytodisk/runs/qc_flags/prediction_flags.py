@@ -248,11 +248,11 @@ def _significant(found: Prediction, row: Any) -> pd.DataFrame:
 
 
 def _unknown(found: Prediction, row: Any) -> str:
-    """Significant links of which too few frames are left without geometry, in words; empty for none."""
+    """Significant links that could not be tested without geometry, and why; empty for none."""
     links = _significant(found, row)
     unknown = links[links["gain_partial"].isna()]
-    told = [f"{_arrow(one)}, layer {one['layer']}" for one in unknown.to_dict("records")]
-    return f"too few frames for {'; '.join(told)}" if told else ""
+    rows = unknown.to_dict("records")
+    return "; ".join(f"{_arrow(one)}, layer {one['layer']}, {one['reason']}" for one in rows)
 
 
 def _lost(one: Any) -> str:
