@@ -163,6 +163,7 @@ def test_line_tension_holds_beads_apart() -> None:
     lobe = 20.0 * circle + 40.0 * np.exp(-((angle - np.pi) ** 2) / 0.05)[:, None] * circle
     start = EdgeBeads.along(20.0 * circle, angle, sectors=20)
     widest = {tension: np.diff(start.carried(lobe, tension).places).max() for tension in (0.0, 1.0, 1000.0)}
-    assert widest[0.0] > 2.0 * widest[1.0] > 2.0 * widest[1000.0] * 0.5
+    assert widest[0.0] > 2.0 * widest[1.0]
+    assert widest[1.0] > widest[1000.0]
     even = start.carried(lobe, 1000.0)
     assert widest[1000.0] == pytest.approx(even.border.length / 80, rel=1e-3)
