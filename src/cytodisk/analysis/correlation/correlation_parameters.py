@@ -10,6 +10,14 @@ Null: TypeAlias = Literal["phase", "shift"]
 Rule: TypeAlias = Literal["nearest", "largest"]
 
 MOST_SURROGATES = 100_000  # p-values down to 0.00001; each takes as long as the correlation itself
+FEWEST_SURROGATES = 19  # with fewer, no p-value is as small as 0.05
+
+
+def enough_surrogates(surrogates: int) -> int:
+    """The number of surrogates; raises ValueError if there are some, but too few for any p to reach 0.05."""
+    if 0 < surrogates < FEWEST_SURROGATES:
+        raise ValueError(f"must be 0, or at least {FEWEST_SURROGATES} for any p to reach 0.05")
+    return surrogates
 
 
 class DetrendParameters(Parameters):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from cytodisk.analysis.correlation.correlation_parameters import FEWEST_SURROGATES
 from cytodisk.analysis.prediction.lagged_design import Rows
 from cytodisk.analysis.prediction.layer_series import LayerSeries
 from cytodisk.analysis.prediction.pooled_autoregression import Held, best_gain, explained, without
@@ -12,9 +13,6 @@ from cytodisk.analysis.prediction.source_scales import Scales
 from cytodisk.analysis.prediction.source_shifts import ShiftedSource, Shifts, circle_of
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import ParameterError
-
-FEWEST_SHIFTS = 19
-"""With fewer, no p-value is as small as 0.05."""
 
 
 def chance_gains(
@@ -68,10 +66,10 @@ def chance_gains(
     followed, rest = split_source(series, orders, past)
     circle = circle_of(len(rest))
     shifts = Shifts.drawn(circle, int(kept.sum()) if series.turns else 1, past, count, seed)
-    if len(shifts.frames) < min(FEWEST_SHIFTS, count):
+    if len(shifts.frames) < min(FEWEST_SURROGATES, count):
         raise ParameterError(
             f"{len(rest)} frames can be shifted in {len(shifts.frames)} ways only, beyond {past} frames to "
-            f"either side, too few for a p-value: pass at least {2 * past + FEWEST_SHIFTS} frames, a "
+            f"either side, too few for a p-value: pass at least {2 * past + FEWEST_SURROGATES} frames, a "
             "smaller max_order, or surrogates=0"
         )
     scales = Scales.of(rest[:, kept], rest[:, kept] != 0.0, 0.5 * past)

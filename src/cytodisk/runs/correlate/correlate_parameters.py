@@ -6,15 +6,15 @@ from pydantic import field_validator
 
 from cytodisk.analysis.correlation.correlation_parameters import (
     CLUSTERS,
+    FEWEST_SURROGATES,
     MOST_SURROGATES,
     PairCorrelationParameters,
     PeakParameters,
     SkipLagsParameters,
+    enough_surrogates,
 )
 from cytodisk.parameters import parameter
 from cytodisk.runs.used_series.used_parameters import UsedSeriesParameters
-
-FEWEST_SURROGATES = 19
 
 
 class CorrelateParameters(
@@ -59,6 +59,4 @@ class CorrelateParameters(
     @field_validator("surrogates")
     @classmethod
     def _enough(cls, surrogates: int) -> int:
-        if 0 < surrogates < FEWEST_SURROGATES:
-            raise ValueError(f"must be 0, or at least {FEWEST_SURROGATES} for any p to reach 0.05")
-        return surrogates
+        return enough_surrogates(surrogates)

@@ -4,12 +4,14 @@ from typing import Literal
 
 from pydantic import field_validator
 
-from cytodisk.analysis.correlation.correlation_parameters import MOST_SURROGATES
+from cytodisk.analysis.correlation.correlation_parameters import (
+    FEWEST_SURROGATES,
+    MOST_SURROGATES,
+    enough_surrogates,
+)
 from cytodisk.analysis.prediction.prediction_parameters import HeldParameters
 from cytodisk.parameters import parameter
 from cytodisk.runs.used_series.used_parameters import UsedSeriesParameters
-
-FEWEST_SURROGATES = 19
 
 
 class PredictParameters(UsedSeriesParameters, HeldParameters):
@@ -40,6 +42,4 @@ class PredictParameters(UsedSeriesParameters, HeldParameters):
     @field_validator("surrogates")
     @classmethod
     def _enough(cls, surrogates: int) -> int:
-        if 0 < surrogates < FEWEST_SURROGATES:
-            raise ValueError(f"must be 0, or at least {FEWEST_SURROGATES} for any p to reach 0.05")
-        return surrogates
+        return enough_surrogates(surrogates)
