@@ -13,6 +13,8 @@ Blocks:
 * bias: mean velocity against the true one, on waves and on cells that turn 5° and 10° a frame.
 * error: standard deviation of (measured - true) / `velocity_error`, for masks with faults of many kinds.
 * no_biology: still patterns and a cortex that moves with the edge, through `run_movie` and `run_correlate`.
+* no_waves: waves that are found in the same movies, in which none runs.
+* no_prediction: links of the same signals with velocity, through `run_predict`.
 * coupled: of the coupled windows that are found, those that are found with geometry taken out, too.
 * survival: how much of a true signal the controls by geometry leave.
 * clusters: coupled windows that are found by clusters and one by one, and movies with a false cluster.
@@ -37,6 +39,8 @@ BLOCKS = {
     "bias": "honest_edge",
     "error": "honest_edge",
     "no_biology": "honest_geometry",
+    "no_waves": "honest_waves",
+    "no_prediction": "honest_waves",
     "coupled": "honest_geometry",
     "survival": "honest_geometry",
     "clusters": "honest_clusters",

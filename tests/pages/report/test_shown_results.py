@@ -4,7 +4,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from page_driver import Page, errors
 from report_study import FRAMES, LAYERS, NAMES, SECTORS
+from selenium import webdriver
+from selenium.webdriver.support.ui import Select
 
 from cytodisk.pages.report import shown_predictions, shown_waves
 from cytodisk.pages.report.page import write_report
@@ -32,13 +35,15 @@ def columns_of(table: pd.DataFrame, columns: dict[str, tuple], name: str) -> pd.
 
 
 def predicted(study: Study) -> None:
-    """Velocity is predicted in layer 1, and predicts nothing."""
+    """Velocity is predicted in layer 1; what it predicts in layer 2 may be noise of measurement alone."""
     parts = []
     for source, target, q in ((SIGNAL, "velocity", 0.01), ("velocity", SIGNAL, 0.6)):
         one = pd.DataFrame({"cell": 0, "source": source, "target": target, "layer": range(LAYERS)})
         one = one.assign(
             gain=0.1, gain_excess=0.01 * one["layer"], p=q, q=np.where(one["layer"] == 1, q, 0.7)
         )
+        one["weaker"] = (one["source"] == "velocity") & (one["layer"] == 2)
+        one.loc[one["weaker"], "q"] = 0.02
         parts.append(one.assign(order=1, source_order=1, n=90, effect=0.4, status="ok"))
     links = columns_of(pd.concat(parts, ignore_index=True), PREDICTION_TABLES, "links")
     cells = pd.DataFrame({"cell": [0], "status": "ok", "frames": FRAMES, "surrogates": 99, "gaps": 0})
@@ -92,7 +97,9 @@ def test_links_have_their_numbers_by_layer_and_their_finding(cell: ShownCell) ->
     (found,) = predictions_of(cell)
     assert found["signals"] == [SIGNAL, "velocity"]
     there, back = found["links"]
-    assert (there["source"], there["best_q"], back["best_q"]) == (SIGNAL, 0.01, 0.6)
+    assert (there["source"], there["best_q"], back["best_q"]) == (SIGNAL, 0.01, 0.02)
+    assert [there["doubtful"], back["doubtful"]] == [False, True]
+    assert [np.nansum(there["lost"]), np.asarray(back["lost"])[2]] == [0, 1]
     np.testing.assert_allclose(there["gain_excess"], 0.01 * np.arange(LAYERS))
     assert found["finding"]
 
@@ -131,3 +138,24 @@ def test_the_page_has_both_sections(tested: Study) -> None:
     assert 'id="predictions"' in html
     assert 'id="waves"' in html
     assert "drawResults" in html
+
+
+@pytest.mark.slow
+def test_a_browser_draws_both_sections(tested: Study, browser: webdriver.Chrome) -> None:
+    page = Page(browser, write_report(tested))
+    look = "['stroke', 'stroke-dasharray'].map((name) => link.children[1].getAttribute(name))"
+    arrows = page.js(f"[...document.querySelectorAll('#figure-network .link')].map((link) => {look})")
+    assert sorted(arrows) == [["#0072b2", None], ["#c8c8c8", "4 3"]]  # what does not count is grey and broken
+    page.js("cytodisk.set({ layer: 2 })")
+    page.settle()
+    there, back = page.text("gain-numbers").split(". ")
+    assert "in layer 2" in there
+    assert "not counted" not in there
+    assert "not counted" in back
+    assert page.js("document.querySelectorAll('#figure-gain circle:not([fill=white])').length") == 1
+    assert "v" in page.js("document.querySelector('#figure-waves .crests').getAttribute('d')")
+    assert page.js("document.querySelectorAll('#wave-numbers tbody tr').length") == 1
+    Select(page.control("wave-shows")).select_by_value("phase")
+    page.settle()
+    assert "crest" in page.text("bar-waves")
+    assert errors(browser) == []
