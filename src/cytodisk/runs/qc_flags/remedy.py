@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from cytodisk.runs.qc_flags.qc_flag import Place
@@ -15,6 +15,7 @@ from cytodisk.store.window_blocks import window_blocks
 _LONGEST_NAME = 60
 _MOST_LEFT_OUT = 0.25  # of the frames of a movie: more leave no series
 _RANGES = ("frames", "sectors")
+_WITHOUT = "without_jumps"
 
 
 def correlate_again(study: Study, names: Sequence[str], variant: str, **changes: Any) -> str:
@@ -74,6 +75,34 @@ def predict_again(study: Study, names: Sequence[str], variant: str, **changes: A
     return shlex.join([*words, *cells, *_flags(asked | changes), "--name", called])
 
 
+def waves_again(study: Study, names: Sequence[str], variant: str, **changes: Any) -> str:
+    """The command that looks for waves again in another way, beside what is there.
+
+    Parameters
+    ----------
+    study : Study
+    names : sequence of str
+        The signal and the name of a variant, as of `Study.wave_signals`.
+    variant : str
+        Name of the new one.
+    **changes
+        Parameters of `cytodisk waves`. All others stay as they were given.
+
+    Returns
+    -------
+    str
+        As "cytodisk waves out --signal Rac1 --without-frames 12,13 --name without_jumps".
+    """
+    signal, *own = names
+    settings = study.waves(*names).settings
+    given = dict(settings.get("given") or {})
+    given.pop("name", None)
+    cells = [f"--cell={cell}" for cell in settings.get("cells") or ()]
+    called = "_".join(filter(None, [*own, variant]))[:_LONGEST_NAME]
+    words = ["cytodisk", "waves", shown_path(str(study.path)), "--signal", signal]
+    return shlex.join([*words, *cells, *_flags(given | changes), "--name", called])
+
+
 def correlate_command(study: Study, signal: str) -> str:
     """The command that correlates a channel with the edge, as "cytodisk correlate out --signal Rac1"."""
     return shlex.join(["cytodisk", "correlate", shown_path(str(study.path)), "--signal", signal])
@@ -106,7 +135,7 @@ def run_again(study: Study, suffix: str, **changes: Any) -> str:
 
 
 def without_frames(study: Study, places: Iterable[Place], after: int = 0) -> str:
-    """How to correlate without the frames of a flag.
+    """How to do without the frames of a flag what was done with them.
 
     Parameters
     ----------
@@ -119,19 +148,17 @@ def without_frames(study: Study, places: Iterable[Place], after: int = 0) -> str
     Returns
     -------
     str
-        Of the first correlation there is, else of the first channel; empty without a signal, or where
-        more than a quarter of the movie would be left out.
+        A command for the first correlation, the first prediction and the first waves, of those there are;
+        of a study without any for the correlation of its first channel. Empty without a signal then, or
+        where more than a quarter of the movie would be left out.
     """
-    channel = _first_channel(study)
-    if channel is None:
-        return ""
     frames = sorted(
         {place.frame + k for place in places if place.frame is not None for k in range(after + 1)}
     )
     if len(frames) > _MOST_LEFT_OUT * study.cells["frame"].nunique():
         return ""
-    names = study.correlations[0] if study.correlations else (channel, "velocity")
-    return f" Or correlate without these frames: {_without(study, names, frames)}"
+    again = list(_without(study, frames))
+    return f" Or leave these frames out: {'; '.join(again)}" if again else ""
 
 
 def _first_channel(study: Study) -> str | None:
@@ -139,9 +166,19 @@ def _first_channel(study: Study) -> str | None:
     return next((str(channels.iloc[0]) for channels in blocks if not channels.empty), None)
 
 
-def _without(study: Study, names: Sequence[str], frames: Sequence[int]) -> str:
-    earlier = study.correlation(*names).settings.get("without_frames") if study.correlations else None
-    return correlate_again(study, names, "without_jumps", without_frames=sorted({*frames, *(earlier or ())}))
+def _without(study: Study, frames: Sequence[int]) -> Iterator[str]:
+    """Commands without frames, and without those that were left out before."""
+    made = (
+        (correlate_again, study.correlation, study.correlations),
+        (predict_again, study.prediction, study.predictions),
+        (waves_again, study.waves, study.wave_signals),
+    )
+    done = [(again, opened, there[0]) for again, opened, there in made if there]
+    for again, opened, names in done:
+        earlier = opened(*names).settings.get("without_frames") or ()
+        yield again(study, names, _WITHOUT, without_frames=sorted({*frames, *earlier}))
+    if not done and (channel := _first_channel(study)) is not None:
+        yield correlate_again(study, (channel, "velocity"), _WITHOUT, without_frames=list(frames))
 
 
 def shown_path(path: str) -> str:
