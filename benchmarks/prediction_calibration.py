@@ -3,8 +3,8 @@
     benchmarks/prediction_calibration.py [--only BLOCK …] [--case WORDS] [--pairs N] [--results FILE]
                                          [--workers 2]
 
-All signals are simulated, from seeds on which nothing was set (from 10 000; what sets parameters takes those
-below, by `--first`). Prints a Markdown table for each block:
+All signals are simulated, from seeds on which nothing was set (from 100 000; what sets parameters takes
+those below, by `--first`). Prints a Markdown table for each block:
 
 * null: pairs that have nothing to do with each other; the share with p ≤ 0.05, of 1 000 pairs a row.
 * one way: the source predicts the target with a partial correlation of 0.3 at lags 1 to 3; the share that is
@@ -40,7 +40,7 @@ from prediction_cases import BLOCKS, Make, Signals, pair, unlike
 from prediction_ways import WAYS, p_values
 from stored_trials import StoredTrials
 
-FIRST_SEED = 10_000
+FIRST_SEED = 100_000
 SURROGATES = 99  # p-values of exactly 0.05 and less are then 5 of 100
 PAIRS = {"null": 1000, "one way": 300, "given": 300, "failures": 100, "direction": 100, "ways": 100}
 NAMES = ("p", "gain", "gain_reversed", "gain_excess", "effect")

@@ -117,6 +117,7 @@ def _null() -> dict[str, Make]:
     found["waves, neighbours alike"] = pair("waves", coupling="none", **ALIKE)
     found["slow source, white target"] = unlike("slow", "white")
     found["white source, slow target"] = unlike("white", "slow")
+    found["waves source, ar1 target"] = unlike("waves", "ar1")
     return found
 
 
@@ -154,7 +155,6 @@ def _failures() -> dict[str, Make]:
         "straight lines in both": changed(none, with_trends),
         "straight lines in both, taken out": changed(changed(none, with_trends), without_lines),
         "slow walks of the whole cell in both": changed(none, with_walks),
-        "waves in the source alone": unlike("waves", "ar1"),
         "slow, one sector, 60 frames": pair("slow", frames=60, sectors=1, coupling="none"),
     }
     noise = {"source_noise": "source", "target_noise": "target"}

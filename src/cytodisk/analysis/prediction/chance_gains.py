@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
 from cytodisk.analysis.correlation.correlation_parameters import FEWEST_SURROGATES
 from cytodisk.analysis.prediction.lagged_design import Rows
 from cytodisk.analysis.prediction.layer_series import LayerSeries
 from cytodisk.analysis.prediction.pooled_autoregression import Held, best_gain, explained, without
-from cytodisk.analysis.prediction.prediction_orders import Orders
+from cytodisk.analysis.prediction.prediction_orders import Orders, penalty
 from cytodisk.analysis.prediction.source_scales import Scales
 from cytodisk.analysis.prediction.source_shifts import ShiftedSource, Shifts, circle_of
 from cytodisk.arrays import BoolArray, FloatArray
@@ -59,13 +61,15 @@ def chance_gains(
     shifted as a whole.
     Shifts by less than the past that is tried, to either side, are left out: what is true comes back in them.
     More are not: where few are left, which hang together with each other but not with the source, the source
-    is beyond all of them too often.
+    is beyond all of them too often. A series that cannot be turned has so few that half of the surrogates
+    are shifts of its rest on reversed time, which keeps its correlations, too.
     """
     used = held.rows.table(np.ones(held.rows.size), len(series.target)).astype(bool)
     kept = held.rows.count > 0
     followed, rest = split_source(series, orders, past)
     circle = circle_of(len(rest))
-    shifts = Shifts.drawn(circle, int(kept.sum()) if series.turns else 1, past, count, seed)
+    around = int(kept.sum()) if series.turns else 1
+    shifts = Shifts.drawn(circle, around, past, count, seed)
     if len(shifts.frames) < min(FEWEST_SURROGATES, count):
         raise ParameterError(
             f"{len(rest)} frames can be shifted in {len(shifts.frames)} ways only, beyond {past} frames to "
@@ -73,15 +77,27 @@ def chance_gains(
             "smaller max_order, or surrogates=0"
         )
     scales = Scales.of(rest[:, kept], rest[:, kept] != 0.0, 0.5 * past)
-    shifted = ShiftedSource(rest[:, kept], used[:, kept], past, shifts, scales)
     fixed = _lags(held, followed, past)
-    columns = np.column_stack([held.basis, fixed, held.left])
-    products, square = shifted.products(held.rows.table(columns, len(rest))[:, kept])
+    tables = held.rows.table(np.column_stack([held.basis, fixed, held.left]), len(rest))[:, kept]
+    ways = [(rest[:, kept], shifts)]
+    if around == 1:
+        ways = _also_reversed(rest[:, kept], scales, shifts, count, seed)
+    found = [ShiftedSource(one, used[:, kept], past, by, scales).products(tables) for one, by in ways]
+    products, square = (np.concatenate(some) for some in zip(*found, strict=True))
     size = held.basis.shape[1]
     along, across, with_target = products[..., :size], products[..., size:-1], products[..., -1]
     square += fixed.T @ fixed - along @ along.transpose(0, 2, 1)
     square += across + across.transpose(0, 2, 1)
     return best_gain(held, explained(square, with_target + fixed.T @ held.left), price)[0]
+
+
+def _also_reversed(
+    rest: FloatArray, scales: Scales, shifts: Shifts, count: int, seed: int
+) -> list[tuple[FloatArray, Shifts]]:
+    """Shifts of the rest, and of the rest on reversed time, half of each where there are enough."""
+    back = Shifts.drawn(circle_of(len(rest)), 1, 1, count // 2, seed + 1)
+    forth = count - len(back.frames)
+    return [(rest, Shifts(shifts.frames[:forth], shifts.sectors[:forth])), ((rest / scales.table)[::-1] * scales.table, back)]
 
 
 def split_source(series: LayerSeries, orders: Orders, past: int) -> tuple[FloatArray, FloatArray]:
@@ -98,7 +114,9 @@ def split_source(series: LayerSeries, orders: Orders, past: int) -> tuple[FloatA
     -----
     Slow series seem to hang together where they do not (Granger and Newbold 1974,
     doi:10.1016/0304-4076(74)90034-7): the coefficients are those of series that the source's own
-    autoregression has made white (Cochrane and Orcutt 1949, doi:10.1080/01621459.1949.10483290).
+    autoregression has made white (Cochrane and Orcutt 1949, doi:10.1080/01621459.1949.10483290). BIC chooses
+    how many there are, often none: what fits by chance would be taken out of the rest, and the rest would
+    then hang together with the target less than chance has it, at every shift.
     """
     known = np.isfinite(series.source)
     rows = Rows.of(known)
@@ -109,19 +127,45 @@ def split_source(series: LayerSeries, orders: Orders, past: int) -> tuple[FloatA
     white = [(_filtered(one, memory), order) for one, order in blocks]
     target = _filtered(series.source, memory)
     rows = Rows.of(np.isfinite(target) & _has_past(white))
-    columns = _columns(rows, white)
+    columns, wanted = _columns(rows, white), rows.lagged(target, range(1))[0]
     if rows.size - rows.sectors < 2 * columns.shape[1]:
         raise ParameterError(
             f"gaps leave {rows.size} rows (frames times sectors) with the {past} frames before that "
             f"surrogates need, too few for {columns.shape[1]} coefficients: fill in short gaps, or pass a "
             "smaller max_order, or surrogates=0"
         )
-    says = np.linalg.lstsq(columns, rows.lagged(target, range(1))[0], rcond=None)[0]
+    counts, chosen = _telling(columns, wanted, [order + 1 for _, order in blocks], 1 + len(series.beside))
+    if not chosen:
+        return np.zeros(known.shape), source
+    says = np.linalg.lstsq(columns[:, chosen], wanted, rcond=None)[0]
+    blocks = [(one, count - 1) for (one, _), count in zip(blocks, counts, strict=True) if count]
     rows = Rows.of(known & _has_past(blocks))
     followed = rows.table(_columns(rows, blocks) @ says, len(known))
     rest = Rows.of(known)
     left = rest.lagged(source - followed, range(1))[0]
     return followed, rest.table(left, len(known))
+
+
+def _telling(
+    columns: FloatArray, wanted: FloatArray, most: list[int], own: int
+) -> tuple[list[int], list[int]]:
+    """How many columns of each series have the smallest BIC, and which; none if they say nothing.
+
+    The first `own` series have as many columns as each other, and so have those that are given.
+    """
+    triangle = np.linalg.qr(np.column_stack([columns, wanted]), mode="r")
+    starts = np.cumsum([0, *most])
+    price = penalty("bic", len(wanted))
+    best: tuple[float, list[int], list[int]] = (np.inf, [], [])
+    for target, given in product(range(most[0] + 1), range(most[-1] + 1 if len(most) > own else 1)):
+        counts = [target] * own + [given] * (len(most) - own)
+        chosen = [start + k for start, count in zip(starts, counts, strict=False) for k in range(count)]
+        along = np.linalg.qr(triangle[:, [*chosen, -1]], mode="r")[len(chosen) :, -1]
+        left = max(float(along @ along), float(np.finfo(np.float64).tiny))
+        value = len(wanted) * np.log(left) + price * len(chosen)
+        if value < best[0]:
+            best = (value, counts, chosen)
+    return best[1:]
 
 
 def _own_memory(series: FloatArray, past: int) -> FloatArray:

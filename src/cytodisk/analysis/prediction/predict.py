@@ -96,7 +96,8 @@ def predict(
     -----
     One autoregression for a layer is pooled over its sectors, each sector's mean removed. The word is
     "predicts": a third signal that drives both, and is not given, makes one predict the other too.
-    Surrogates are the source with what nothing else says of it shifted in time and around the cell.
+    Surrogates are the source with what nothing else says of it shifted in time and around the cell; where it
+    is the same all around, or there is one sector, half of them run backwards in time.
 
     References
     ----------
