@@ -30,7 +30,8 @@ def test_a_missed_target_is_said(calibration: Any, capsys: pytest.CaptureFixture
 
 
 def test_cases_with_words_are_those_of_the_block(calibration: Any) -> None:
-    assert list(calibration.cases_of("null", "waves")) == ["waves", "waves, neighbours alike"]
+    waves = ["waves", "waves, neighbours alike", "waves source, ar1 target"]
+    assert list(calibration.cases_of("null", "waves")) == waves
     assert len(calibration.cases_of("ways")) == len(calibration.WAY_CASES)
 
 

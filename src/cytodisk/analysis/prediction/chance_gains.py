@@ -153,19 +153,23 @@ def _telling(
 
     The first `own` series have as many columns as each other, and so have those that are given.
     """
-    triangle = np.linalg.qr(np.column_stack([columns, wanted]), mode="r")
+    triangle = _triangle(np.column_stack([columns, wanted]))
     starts = np.cumsum([0, *most])
     price = penalty("bic", len(wanted))
     best: tuple[float, list[int], list[int]] = (np.inf, [], [])
     for target, given in product(range(most[0] + 1), range(most[-1] + 1 if len(most) > own else 1)):
         counts = [target] * own + [given] * (len(most) - own)
         chosen = [start + k for start, count in zip(starts, counts, strict=False) for k in range(count)]
-        along = np.linalg.qr(triangle[:, [*chosen, -1]], mode="r")[len(chosen) :, -1]
+        along = _triangle(triangle[:, [*chosen, -1]])[len(chosen) :, -1]
         left = max(float(along @ along), float(np.finfo(np.float64).tiny))
         value = len(wanted) * np.log(left) + price * len(chosen)
         if value < best[0]:
             best = (value, counts, chosen)
     return best[1:]
+
+
+def _triangle(columns: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.qr(columns, mode="r"), dtype=np.float64)
 
 
 def _own_memory(series: FloatArray, past: int) -> FloatArray:
