@@ -108,12 +108,13 @@ def test_half_of_the_surrogates_of_one_sector_run_backwards_in_time() -> None:
     rows = rows_with_past(series, PAST)
     held = Held.of(series, rows, orders)
     gains = chance_gains(held, series, orders, PAST, None, count=20, seed=0)
-    rest = source - source.mean()
+    scale = Scales.of(source - source.mean(), np.ones(source.shape, dtype=bool), 0.5 * PAST).table
+    rest = (source - source.mean()) / scale
     forth, back = Shifts.drawn(40, 1, PAST, 20, 0), Shifts.drawn(40, 1, 1, 10, 1)
     assert len(gains) == 20
     for gain, place in ((gains[9], 9), (gains[10], 0), (gains[19], 9)):
         one, by = (rest, forth) if gain == gains[9] else (rest[::-1], back)
-        columns = shifted(one, by.frames[place], 0)[rows.frame, rows.sector]
+        columns = (shifted(one, by.frames[place], 0) * scale[..., None])[rows.frame, rows.sector]
         columns = columns - columns.mean(axis=0)
         columns -= held.basis @ (held.basis.T @ columns)
         left = np.linalg.lstsq(columns, held.left, rcond=None)[1].item()

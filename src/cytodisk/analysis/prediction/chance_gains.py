@@ -97,7 +97,10 @@ def _also_reversed(
     """Shifts of the rest, and of the rest on reversed time, half of each where there are enough."""
     back = Shifts.drawn(circle_of(len(rest)), 1, 1, count // 2, seed + 1)
     forth = count - len(back.frames)
-    return [(rest, Shifts(shifts.frames[:forth], shifts.sectors[:forth])), ((rest / scales.table)[::-1] * scales.table, back)]
+    return [
+        (rest, Shifts(shifts.frames[:forth], shifts.sectors[:forth])),
+        ((rest / scales.table)[::-1] * scales.table, back),
+    ]
 
 
 def split_source(series: LayerSeries, orders: Orders, past: int) -> tuple[FloatArray, FloatArray]:
