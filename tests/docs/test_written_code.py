@@ -52,6 +52,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for command in (
         f"movie {masks} --signal {signal} --groups groups.csv -o out --figures 0",
         "correlate out --signal edge --with velocity --surrogates 99 --figures 0",
+        "predict out --source edge --target velocity --max-order 3 --surrogates 39 --no-geometry --figures 0",
+        "waves out --surrogates 19 --no-geometry --figures 0",
         f"shapes {masks} -o shapes",
         "map cells.tif --nuclei nuclei.tif --signal cells_image.tif --channels DAPI,GFP -o nuclei_out "
         "--figures 0",
