@@ -22,6 +22,7 @@ from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.partial_words import SIGNIFICANT
 from cytodisk.runs.run_options import Progress
+from cytodisk.runs.used_series.cell_controls import too_few_frames
 
 LEAST_LEFT = 0.5
 """Share of a correlation that must be left at its lag, else it was made by the controls for the most part."""
@@ -47,10 +48,8 @@ class Partial:
         """Why there is no correlation; empty if there is."""
         if self.correlations is not None:
             return ""
-        return (
-            f"the cell moves on: half of the windows have {self.frames:.0f} frames or fewer at places that "
-            f"it held outside the largest lag, too; {FEWEST_FRAMES} are needed, a smaller max-lag leaves more"
-        )
+        words = too_few_frames(self.frames, "outside the largest lag")
+        return f"{words}, a smaller max-lag leaves more"
 
 
 def partial_correlation(

@@ -14,7 +14,7 @@ from cytodisk.errors import ParameterError
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.predict.predict_parameters import PredictParameters
 from cytodisk.runs.run_options import Progress
-from cytodisk.runs.used_series.cell_controls import CellControls
+from cytodisk.runs.used_series.cell_controls import CellControls, too_few_frames
 from cytodisk.runs.used_series.chosen_series import chosen_series
 from cytodisk.store.study import Study
 
@@ -103,7 +103,7 @@ class SeriesOfStudy:
         left = {name: self._left(raw[name], found.by_channel.get(name)) for name in self.names}
         frames = min(float(left[name].count("time").median()) for name in channels)
         if frames < FEWEST_FRAMES:
-            return CellSeries(raw, not_tested=_too_few(frames), partial_frames=frames)
+            return CellSeries(raw, not_tested=too_few_frames(frames), partial_frames=frames)
         return CellSeries(raw, left, "", frames)
 
     def _prepared(self, series: xr.DataArray) -> xr.DataArray:
@@ -140,10 +140,3 @@ def given_to(
     """
     asked = (names if network else ()) if given is None else given
     return tuple(name for name in asked if name not in (source, target))
-
-
-def _too_few(frames: float) -> str:
-    return (
-        f"the cell moves on: half of the windows have {frames:.0f} frames or fewer at places that it held at "
-        f"other times, too; {FEWEST_FRAMES} are needed"
-    )

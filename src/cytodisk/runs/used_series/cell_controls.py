@@ -43,6 +43,14 @@ class FoundControls:
         return any(len(controls) for controls in self.by_channel.values())
 
 
+def too_few_frames(frames: float, when: str = "at other times") -> str:
+    """Why nothing is left without geometry: so few frames, median over windows, have controls."""
+    return (
+        f"the cell moves on: half of the windows have {frames:.0f} frames or fewer at places that it held "
+        f"{when}, too; {FEWEST_FRAMES} are needed"
+    )
+
+
 @dataclass(frozen=True)
 class CellControls:
     """Makes the controls of a cell; the same for all cells of a study.

@@ -18,7 +18,7 @@ from cytodisk.analysis.correlation.prepared_series import drifting_share
 from cytodisk.errors import ParameterError
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.run_options import Progress
-from cytodisk.runs.used_series.cell_controls import CellControls
+from cytodisk.runs.used_series.cell_controls import CellControls, too_few_frames
 from cytodisk.runs.used_series.progress_phases import phases
 from cytodisk.runs.waves.cell_wave_series import WaveSeries, used_series, wave_series
 from cytodisk.runs.waves.disk_rows import NOT_INSIDE, depth_table, disk_wave, inside_row
@@ -186,10 +186,7 @@ class CellWaves:
         left = without_controls(series.values, found.by_channel[self.signal])
         frames = float(left.count("time").median())
         if frames < FEWEST_FRAMES:
-            return (
-                None,
-                f"half of the windows have {frames:.0f} frames or fewer at places that it held longer",
-            )
+            return None, too_few_frames(frames)
         return left, found.not_tested
 
 
