@@ -47,7 +47,12 @@ def predicted(study: Study) -> None:
         parts.append(one.assign(order=1, source_order=1, n=90, effect=0.4, status="ok"))
     links = columns_of(pd.concat(parts, ignore_index=True), PREDICTION_TABLES, "links")
     cells = pd.DataFrame({"cell": [0], "status": "ok", "frames": FRAMES, "surrogates": 99, "gaps": 0})
-    tables = {"links": links, "cells": columns_of(cells, PREDICTION_TABLES, "cells")}
+    lags = links[["cell", "source", "target", "layer"]].assign(lag=1, coefficient=0.4)
+    tables = {
+        "links": links,
+        "lags": columns_of(lags, PREDICTION_TABLES, "lags"),
+        "cells": columns_of(cells, PREDICTION_TABLES, "cells"),
+    }
     settings = {"signals": [SIGNAL, "velocity"], "geometry": False}
     write_prediction(study.path, (SIGNAL, "velocity", ""), tables, PREDICTION_TABLES, settings)
 
