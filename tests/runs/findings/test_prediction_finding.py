@@ -145,6 +145,25 @@ def test_several_cells_are_told_together(study: MadeStudy, monkeypatch: pytest.M
     assert lines[1].startswith("Finding, cell 0: Rac1 predicts")
 
 
+def test_over_cells_the_weaker_direction_is_said_and_not_counted(study: MadeStudy) -> None:
+    found = found_with(study, pair(link(*PAIR, 0, 0.2)))
+    cells = pd.concat([found.cells, found.cells.assign(cell=1)])
+    pooled = found.pooled.assign(q=0.01, weaker=True)  # in no cell by itself
+    tables = {"links": found.links, "lags": found.lags, "cells": cells, "pooled": pooled}
+    told = pooled_finding(study, UnwrittenPrediction(study.path, *PAIR, "", found.settings, tables))
+    assert told is not None
+    assert told.kind == "nothing"
+    assert told.words.count("but it is the weaker of both directions") == 2
+    one = UnwrittenPrediction(
+        study.path, *PAIR, "", found.settings, tables | {"pooled": pooled.assign(weaker=pooled["layer"] == 1)}
+    )
+    told = pooled_finding(study, one)
+    assert told is not None
+    assert told.kind == "found"
+    assert "weaker" not in told.words
+    assert "edge velocity predicts Rac1 in layer 0" in told.words.replace("Edge", "edge")
+
+
 def test_lines_by_layer(study: MadeStudy) -> None:
     rows = pair(link(*PAIR, 0, 0.01), link(*PAIR, 1, 0.2), link(*PAIR, 2, 0.5))
     lines = list(prediction_lines(found_with(study, rows), study))

@@ -103,6 +103,10 @@ def test_cells_are_pooled_and_those_left_out_have_a_row(pair: Prediction) -> Non
     assert one["gain_excess"] == pytest.approx((weights * links["gain_excess"]).sum())
     assert one["p"] == pytest.approx(1 / 60)
     assert of(pooled, "velocity", "Rac1")["p"].min() > 0.05
+    assert not pooled["weaker"].any()
+    means = pair.links.groupby(["source", "layer"])["gain_reversed"].agg(["min", "max"])
+    by_link = pooled.set_index(["source", "layer"])["gain_reversed"]
+    assert by_link.between(means["min"].loc[by_link.index], means["max"].loc[by_link.index]).all()
 
 
 def test_files_settings_and_the_open_study(study: MadeStudy, pair: Prediction) -> None:

@@ -90,9 +90,8 @@ def pooled_finding(study: Study, found: Prediction) -> Finding | None:
     for (source, target), rows in found.pooled.groupby(["source", "target"], sort=False):
         same = [way for way in ways if (way.source, way.target) == (source, target)]
         told.append(_pooled_direction(study, str(source), str(target), rows, same))
-        there = rows.loc[rows["q"] < SIGNIFICANT, "gain_excess"]
-        if not _mostly_weaker(same):
-            size = max([size, *there.astype(float)])
+        sure = rows.loc[(rows["q"] < SIGNIFICANT) & ~rows["weaker"], "gain_excess"]
+        size = max([size, *sure.astype(float)])
     if found.is_network:
         told = [words for words in told if " does not predict " not in words] or [
             "no signal predicts another in any layer"
@@ -113,6 +112,8 @@ def _pooled_direction(
     there = rows[rows["q"] < SIGNIFICANT]
     if there.empty:
         return f"{pair.format('does not predict')} in any layer ({_least(float(rows['q'].min()))})"
+    sure = there[~there["weaker"]]
+    there = sure if len(sure) else there
     best = max(there.to_dict("records"), key=lambda row: float(row["gain_excess"]))
     layers = [int(layer) for layer in there["layer"]]
     most = f", most in {layer_name(study, int(best['layer']))}" if len(layers) > 1 else ""
@@ -121,14 +122,8 @@ def _pooled_direction(
         f"{pair.format('predicts')} in {numbers_words('layer', layers)}{most}: {less_error(best['gain'])} "
         f"(q = {best['q']:.2g}); {effect_words(source, target, _mean(effects))}; by itself in "
         f"{sum(bool(way.clear) for way in ways)} of {len(ways)} cells"
-        f"{f', but {_doubt_words([WEAKER])}' if _mostly_weaker(ways) else ''}"
+        f"{'' if len(sure) else f', but {_doubt_words([WEAKER])}'}"
     )
-
-
-def _mostly_weaker(ways: list[Direction]) -> bool:
-    """Whether a direction is the weaker one in half of the cells or more in which it is significant."""
-    some = [any(WEAKER in one.doubts for one in way.judged) for way in ways if way.judged]
-    return 2 * sum(some) >= len(some) > 0
 
 
 def _pair(study: Study, found: Prediction, ways: list[Direction]) -> list[str]:

@@ -10,17 +10,20 @@ import pandas as pd
 
 from cytodisk.analysis.correlation.peaks import false_discovery
 from cytodisk.arrays import FloatArray
-from cytodisk.runs.predict.tested_link import TestedLink
+from cytodisk.runs.partial_words import SIGNIFICANT
+from cytodisk.runs.predict.tested_link import TestedLink, weaker_links
 
 _QUANTILE = 0.95
+_OWN = ("n", "gain", "gain_reversed")
 
 
 @dataclass(frozen=True, eq=False)
 class _CellGain:
-    """Of one cell and layer: rows, gain, and gains of shifted sources."""
+    """Of one cell and layer: rows, gain, that on reversed time, and gains of shifted sources."""
 
     n: float
     gain: float
+    gain_reversed: float
     null: FloatArray
 
 
@@ -60,7 +63,8 @@ def pooled_table(links: Sequence[TestedLink], seed: int) -> pd.DataFrame:
             rows.append(names | _pooled(gains, random))
     table = pd.DataFrame(rows)
     if len(table):
-        table.insert(len(table.columns) - 1, "q", false_discovery(table["p"].to_numpy(dtype=np.float64)))
+        table["q"] = false_discovery(table["p"].to_numpy(dtype=np.float64))
+        table["weaker"] = (table["q"] < SIGNIFICANT).to_numpy() & weaker_links(table)
     return table
 
 
@@ -73,7 +77,7 @@ def _gains(link: TestedLink) -> list[tuple[int, _CellGain]]:
         if np.isfinite(float(one["gain"])):
             null = one["gain_null"].to_numpy() if "gain_null" in one else np.empty(0)
             null = null[np.isfinite(null)]
-            found.append((int(layer), _CellGain(float(one["n"]), float(one["gain"]), null)))
+            found.append((int(layer), _CellGain(*(float(one[name]) for name in _OWN), null)))
     return found
 
 
@@ -82,7 +86,8 @@ def _pooled(cells: Sequence[_CellGain], random: np.random.Generator) -> dict[str
     weights = weights / weights.sum()
     gain = float(weights @ [cell.gain for cell in cells])
     count = min((len(cell.null) for cell in cells), default=0) and max(len(cell.null) for cell in cells)
-    found = {"cells": len(cells), "gain": gain}
+    reversed_gains = np.array([cell.gain_reversed for cell in cells])
+    found = {"cells": len(cells), "gain": gain, "gain_reversed": _mean(reversed_gains, weights)}
     if not count:
         return found | dict.fromkeys(("gain_excess", "p", "threshold"), np.nan)
     drawn = np.array([_drawn(cell.null, count, random) for cell in cells])
@@ -90,6 +95,12 @@ def _pooled(cells: Sequence[_CellGain], random: np.random.Generator) -> dict[str
     own = float(weights @ [cell.null.mean() for cell in cells])
     p = (1 + int((null >= gain).sum())) / (1 + count)
     return found | {"gain_excess": gain - own, "p": p, "threshold": float(np.quantile(null, _QUANTILE))}
+
+
+def _mean(values: FloatArray, weights: FloatArray) -> float:
+    """Weighted mean of what is known; NaN where nothing is."""
+    known = np.isfinite(values)
+    return float(np.average(values[known], weights=weights[known])) if known.any() else float("nan")
 
 
 def _drawn(null: FloatArray, count: int, random: np.random.Generator) -> FloatArray:

@@ -26,6 +26,20 @@ _P = Column(
 _THRESHOLD = Column("threshold", pa.float64(), "nat", "gain that 5 % of the shifted sources exceed")
 _PARTIAL = "with what geometry alone would give regressed out; empty if that could not be made"
 
+_REVERSED = Column(
+    "gain_reversed",
+    pa.float64(),
+    "nat",
+    "gain of the same source on reversed time, where what is true turns around",
+)
+_WEAKER = Column(
+    "weaker",
+    pa.bool_(),
+    "",
+    "q < 0.05, but the other direction is stronger, and noise of measurement alone would make this one: "
+    "it gains less than half of gain_reversed, and the other one more than its own",
+)
+
 LINKS: Columns = (
     CELL,
     _SOURCE,
@@ -58,19 +72,8 @@ LINKS: Columns = (
         "",
         "q < 0.05, but not without geometry, or less than a quarter of gain_excess is left without it",
     ),
-    Column(
-        "gain_reversed",
-        pa.float64(),
-        "nat",
-        "gain of the same source on reversed time, where what is true turns around",
-    ),
-    Column(
-        "weaker",
-        pa.bool_(),
-        "",
-        "q < 0.05, but the other direction is stronger, and noise of measurement alone would make this one: "
-        "it gains less than half of gain_reversed, and the other one more than its own",
-    ),
+    _REVERSED,
+    _WEAKER,
     Column(
         "stress",
         pa.string(),
@@ -116,6 +119,8 @@ POOLED: Columns = (
     _P._replace(meaning="share of sums over cells of shifted sources with at least this sum of gains"),
     Column("q", pa.float64(), "1", "p, adjusted for all rows of the table (Benjamini and Hochberg)"),
     _THRESHOLD._replace(meaning="mean gain that 5 % of the sums of shifted sources exceed"),
+    _REVERSED._replace(meaning="mean gain_reversed of the cells, each weighted by its rows"),
+    _WEAKER,
 )
 
 CELLS: Columns = (
