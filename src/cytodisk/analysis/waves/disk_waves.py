@@ -179,12 +179,12 @@ def _strongest(
     waves = DepthWaves.of(modes.shape[1] - 1, modes.shape[2])
     groups = waves.groups()
 
-    def scores(power: FloatArray) -> FloatArray:
-        excess = background(power, found.frequencies, groups).excess
-        return wave_scores(power[: found.visible], excess[: found.visible], groups)
+    fitted = background(depth_cells(modes[..., None], found), found.frequencies, groups)
 
-    power = depth_cells(modes[..., None], found)
-    own = scores(power)[:, :, 0]
+    def scores(excess: FloatArray) -> FloatArray:
+        return wave_scores(fitted.usual[: found.visible], excess[: found.visible], groups)
+
+    own = scores(fitted.excess)[:, :, 0]
     place, column = np.unravel_index(int(own.argmax()), own.shape)
     several = [cells for cells in groups if len(cells) > 1]
     count = len(waves.around)
@@ -192,7 +192,12 @@ def _strongest(
     step = 1.0 / (seconds[-1] - seconds[0])
     within = (1.0 / periods[1], 1.0 / periods[0])
     frequency = refined_frequency(modes[:, mode], seconds, float(found.frequencies[place]), step, within)
-    null = _null(series, modes, found, scores, how, progress)
+
+    def largest(drawn: ComplexArray) -> FloatArray:
+        excess = background(depth_cells(drawn, found), found.frequencies, groups).excess
+        return np.asarray(scores(excess).max(axis=(0, 1)))
+
+    null = _null(series, modes, found, largest, how, progress)
     pairs = np.stack([pair_amplitudes(layer, seconds, frequency) for layer in modes[:, mode].T], axis=2)
     travel = depth_travel(pairs[:, 0], pairs[:, 1] if mode else None, series.depth)
     return DiskWave(mode, frequency, float(own.max()), null, pairs, seconds, travel, periods)
@@ -202,7 +207,7 @@ def _null(
     series: DiskSeries,
     modes: ComplexArray,
     found: Bands,
-    scores: Callable[[FloatArray], FloatArray],
+    score: Callable[[ComplexArray], FloatArray],
     how: WaveSearchParameters,
     progress: Callable[[int, int], None] | None,
 ) -> FloatArray:
@@ -210,14 +215,13 @@ def _null(
     whole, used = series.whole(), series.used
     slots = frame_slots(whole)[used]
     values = np.stack([layer.values[used] for layer in series.layers], axis=2)
-    largest: list[float] = []
+    scores: list[float] = []
     null = DepthNull(modes, values, slots - slots[0], whole.interval, found, how.seed)
     for drawn in null.draw(how.surrogates):
-        power = depth_cells(drawn, found)
-        largest.extend(scores(power).max(axis=(0, 1)))
+        scores.extend(score(drawn))
         if progress is not None:
-            progress(len(largest), how.surrogates)
-    return np.array(largest)
+            progress(len(scores), how.surrogates)
+    return np.array(scores)
 
 
 def _dataset(named: xr.DataArray, series: DiskSeries, found: DiskWave) -> xr.Dataset:

@@ -14,9 +14,11 @@ import numpy as np
 from cytodisk.arrays import FloatArray, IntArray
 
 _FLOOR = 1e-3  # of the mean power at a frequency: modes with less count as if they had it
-_PASSES = 2
-_REWEIGHTED = 4  # least absolute deviations, by weights
+_PASSES = 6
+_MOST = 4.0  # power over background of which no more counts: waves hardly move it, noise has so much in 2 %
+_USUAL = 1.0 - np.exp(-_MOST)  # mean of what counts, in noise
 _SLOPE_PRIOR = 4.0  # weight of a slope of 0, in values
+_STEP = 1.0  # of slopes, at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,11 +29,15 @@ class Background:
     ----------
     excess : ndarray of shape (K, C, R) and dtype float
         Natural logarithm of power over background.
+    usual : ndarray of shape (K, C, R) and dtype float
+        The background.
     level, slope : ndarray of shape (G, R) and dtype float
-        Of each group, over the logarithm of frequency less its mean: slow ones may be smoother.
+        Of each group less the mean of all, over the logarithm of frequency less its mean: slow ones may be
+        smoother.
     """
 
     excess: FloatArray
+    usual: FloatArray
     level: FloatArray
     slope: FloatArray
 
@@ -56,26 +62,54 @@ def background(power: FloatArray, frequencies: FloatArray, groups: Sequence[IntA
     logs = np.log(power + floor)
     abscissa = np.log(frequencies)
     abscissa = abscissa - abscissa.mean()
-    level = np.zeros((len(groups), power.shape[2]))
+    column = np.empty(power.shape[1], dtype=np.int64)
+    for group, cells in enumerate(groups):
+        column[cells] = group
+    level = np.stack([logs[:, cells].mean(axis=(0, 1)) for cells in groups])
     slope = np.zeros_like(level)
+    shared = np.zeros((len(logs), power.shape[2]))  # of one group alone, nothing is
+    x = abscissa[:, None]
     for _ in range(_PASSES):
         if len(groups) > 1:
-            logs -= np.median(logs, axis=1, keepdims=True)
+            shared += np.log(_counted(logs, shared, level, slope, x, column).mean(axis=1))
+        counted = _counted(logs, shared, level, slope, x, column)
         for group, cells in enumerate(groups):
-            a, b = _robust_line(logs[:, cells], abscissa)
-            logs[:, cells] -= (a + abscissa[:, None] * b)[:, None]
-            level[group] += a
-            slope[group] += b
-    return Background(logs, level, slope)
+            level[group] += np.log(counted[:, cells].mean(axis=(0, 1)))
+        counted = _counted(logs, shared, level, slope, x, column)
+        for group, cells in enumerate(groups):
+            pull = ((counted[:, cells] - 1.0).sum(axis=1) * x).sum(axis=0) - _SLOPE_PRIOR * slope[group]
+            step = pull / (len(cells) * (x**2).sum() + _SLOPE_PRIOR)
+            slope[group] += np.clip(step, -_STEP, _STEP)
+        if len(groups) > 1:
+            for one, by in ((level, np.ones_like(x)), (slope, x)):
+                shared += by * one.mean(axis=0)
+                one -= one.mean(axis=0)
+    expected = shared[:, None] + level[column] + x[:, None] * slope[column]
+    return Background(logs - expected, np.exp(expected), level, slope)
 
 
-def wave_scores(power: FloatArray, excess: FloatArray, groups: Sequence[IntArray]) -> FloatArray:
+def _counted(
+    logs: FloatArray,
+    shared: FloatArray,
+    level: FloatArray,
+    slope: FloatArray,
+    x: FloatArray,
+    column: IntArray,
+) -> FloatArray:
+    """Power over background, as far as it counts, in units of what noise has."""
+    excess = logs - shared[:, None] - level[column] - x[:, None] * slope[column]
+    return np.asarray(np.exp(np.minimum(excess, np.log(_MOST))) / _USUAL)
+
+
+def wave_scores(usual: FloatArray, excess: FloatArray, groups: Sequence[IntArray]) -> FloatArray:
     """Share of all power that each wave carries, times the logarithm of its excess; below 0 counts as 0.
 
     Parameters
     ----------
-    power, excess : ndarray of shape (K, C, R) and dtype float
-        At the frequencies that are looked for.
+    usual : ndarray of shape (K, C, R or 1) and dtype float
+        Background at the frequencies that are looked for.
+    excess : ndarray of shape (K, C, R) and dtype float
+        Of the movies there.
     groups : sequence of ndarray of dtype int
 
     Returns
@@ -83,6 +117,7 @@ def wave_scores(power: FloatArray, excess: FloatArray, groups: Sequence[IntArray
     ndarray of shape (K, C + groups of several, R) and dtype float
         Of each wave, then of all of a group together: standing waves.
     """
+    power = usual * np.exp(excess)
     share = power / power.sum(axis=(0, 1))
     several = [cells for cells in groups if len(cells) > 1]
     excesses, shares = [excess], [share]
@@ -91,18 +126,3 @@ def wave_scores(power: FloatArray, excess: FloatArray, groups: Sequence[IntArray
         excesses.append(together[:, None])
         shares.append(share[:, cells].sum(axis=1)[:, None])
     return np.asarray(np.concatenate(shares, axis=1) * np.maximum(np.concatenate(excesses, axis=1), 0.0))
-
-
-def _robust_line(values: FloatArray, abscissa: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Level and slope of least absolute deviations through values (K, C, R), each of shape (R,)."""
-    x = abscissa[:, None, None]
-    level = np.median(values, axis=(0, 1))
-    slope = np.zeros_like(level)
-    for _ in range(_REWEIGHTED):
-        weight = 1.0 / np.maximum(np.abs(values - level - x * slope), 0.1)
-        total = weight.sum(axis=(0, 1))
-        mean_x, mean = (weight * x).sum(axis=(0, 1)) / total, (weight * values).sum(axis=(0, 1)) / total
-        square = (weight * (x - mean_x) ** 2).sum(axis=(0, 1))
-        slope = (weight * (x - mean_x) * (values - mean)).sum(axis=(0, 1)) / (square + _SLOPE_PRIOR)
-        level = mean - slope * mean_x
-    return level, slope

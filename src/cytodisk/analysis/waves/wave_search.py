@@ -10,7 +10,7 @@ import numpy as np
 from cytodisk.analysis.waves.edge_modes import highest_mode, mode_weights, modes_of
 from cytodisk.analysis.waves.edge_series import EdgeSeries, check_shown
 from cytodisk.analysis.waves.mode_spectrum import Bands, bands, refined_frequency, wave_cells
-from cytodisk.analysis.waves.wave_background import background, edge_groups, wave_scores
+from cytodisk.analysis.waves.wave_background import Background, background, edge_groups, wave_scores
 from cytodisk.analysis.waves.wave_surrogates import WaveNull
 from cytodisk.analysis.waves.waves_parameters import WaveSearchParameters
 from cytodisk.arrays import ComplexArray, FloatArray
@@ -91,11 +91,14 @@ class WaveSearch:
         """Share of the variance at the frequencies that are looked for; the taper shows each in several."""
         return np.asarray(power[: self.bands.visible] / (_OVERLAP * self._variance))
 
-    def scores(self, power: FloatArray) -> FloatArray:
-        """Scores (visible, 3 M + 1, R)."""
-        groups, visible = edge_groups(self.highest), self.bands.visible
-        excess = background(power, self.bands.frequencies, groups).excess
-        return wave_scores(power[:visible], excess[:visible], groups)
+    def background(self, power: FloatArray) -> Background:
+        """What explains a power (K, C, R) without a wave."""
+        return background(power, self.bands.frequencies, edge_groups(self.highest))
+
+    def scores(self, excess: FloatArray, usual: FloatArray) -> FloatArray:
+        """Scores (visible, 3 M + 1, R) of an excess (K, C, R) over a background (K, C, R or 1)."""
+        visible = self.bands.visible
+        return wave_scores(usual[:visible], excess[:visible], edge_groups(self.highest))
 
     def null_scores(
         self, how: WaveSearchParameters, progress: Callable[[int, int], None] | None
@@ -103,9 +106,10 @@ class WaveSearch:
         """Largest score of each surrogate, (R,), and the shares of modes in its variance, (M + 1, R)."""
         found: list[float] = []
         shares = []
+        usual = self.background(self.power(self.values[:, :, None])).usual
         for movies in WaveNull(self.series, self.bands, how.seed).draw(how.surrogates):
             power = self.power(movies)
-            found.extend(self.scores(power).max(axis=(0, 1)))
+            found.extend(self.scores(self.background(power).excess, usual).max(axis=(0, 1)))
             shares.append(mode_shares(self.shares(power)))
             if progress is not None:
                 progress(len(found), how.surrogates)
@@ -131,7 +135,8 @@ def strongest_wave(
     """
     search = WaveSearch(series, how)
     power = search.power(search.values[:, :, None])
-    scores = search.scores(power)[:, :, 0]
+    fitted = search.background(power)
+    scores = search.scores(fitted.excess, fitted.usual)[:, :, 0]
     place, wave = np.unravel_index(int(scores.argmax()), scores.shape)
     mode = wave_mode(int(wave), search.highest)
     step = 1.0 / (search.seconds[-1] - search.seconds[0])
