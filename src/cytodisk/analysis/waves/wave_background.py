@@ -68,6 +68,8 @@ def background(power: FloatArray, frequencies: FloatArray, groups: Sequence[IntA
     level = np.stack([logs[:, cells].mean(axis=(0, 1)) for cells in groups])
     slope = np.zeros_like(level)
     shared = np.zeros((len(logs), power.shape[2]))  # of one group alone, nothing is
+    if len(groups) > 1:
+        shared = (logs - level[column]).mean(axis=1)
     x = abscissa[:, None]
     for _ in range(_PASSES):
         if len(groups) > 1:
