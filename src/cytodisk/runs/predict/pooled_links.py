@@ -75,9 +75,10 @@ def _gains(link: TestedLink) -> list[tuple[int, _CellGain]]:
     for layer in link.raw["layer"].to_numpy():
         one = link.raw.sel(layer=layer)
         if np.isfinite(float(one["gain"])):
+            n, gain, gain_reversed = (float(one[name]) for name in _OWN)
             null = one["gain_null"].to_numpy() if "gain_null" in one else np.empty(0)
             null = null[np.isfinite(null)]
-            found.append((int(layer), _CellGain(*(float(one[name]) for name in _OWN), null)))
+            found.append((int(layer), _CellGain(n, gain, gain_reversed, null)))
     return found
 
 
