@@ -47,8 +47,9 @@ def say_findings(console: "Console", found: Found) -> None:
     """What was found, and what speaks against it."""
     for words in found.sentences:
         console.print(words)
-    for one in found.warnings:
-        console.print(f"Warning: {one['name']}: {one['finding']} {one['consequence']} {one['remedy']}")
+    said = [f"{one['name']}: {one['finding']} {one['consequence']} {one['remedy']}" for one in found.warnings]
+    for words in dict.fromkeys(said):  # with and without geometry much is the same
+        console.print(f"Warning: {words}")
 
 
 def _count_words(statuses: Counter[str], whole: int, done_words: str) -> str:

@@ -1,5 +1,6 @@
 """What a run over a movie tells at its end: how many frames were mapped, how the edge moved."""
 
+import shlex
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -76,6 +77,7 @@ def finding_line(study: "Study") -> Iterator[str]:
     """What was measured of the cell with the most mapped frames, and the command that asks more."""
     from cytodisk.runs.findings.doubt_words import bearing_flags
     from cytodisk.runs.findings.movie_finding import measured, usual_cell
+    from cytodisk.runs.qc_flags.remedy import shown_path
     from cytodisk.runs.qc_flags.study_flags import run_flags
 
     cell = usual_cell(study)
@@ -85,6 +87,8 @@ def finding_line(study: "Study") -> Iterator[str]:
     yield f"Finding, cell {cell}: {finding.words}"
     if finding.command:
         yield f"Does the signal rise before the edge moves? {finding.command}"
+        asked = [shlex.join(["cytodisk", name, shown_path(str(study.path))]) for name in ("predict", "waves")]
+        yield f"Does one predict the other? {asked[0]}. Do waves run along the edge? {asked[1]}"
 
 
 def _bounds(edge: Any) -> list[str]:

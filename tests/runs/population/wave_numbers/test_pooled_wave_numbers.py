@@ -75,3 +75,10 @@ def test_conditions_are_compared_by_all_numbers_and_a_constant_one_does_no_harm(
     assert compared.loc["wave_period_s", "p_holm"] <= 0.05
     (words,) = [one for one in found.sentences if one.startswith("drug differs from control")]
     assert "period, drug less control 30 s" in words
+
+
+def test_numbers_that_one_condition_lacks_are_told_as_numbers_not_as_windows() -> None:
+    found = pooled({"control": (0.5, 90.0), "drug": (0.01, 90.0)})
+    (one,) = (one for one in found.warnings if one["name"] == "numbers not tested")
+    assert one["finding"] == "4 of 5 numbers of waves have no value in too many experiments."
+    assert "window" not in " ".join(map(str, one.values()))

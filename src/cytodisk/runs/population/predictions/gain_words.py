@@ -139,7 +139,7 @@ def _untested(row: Any) -> str:
     why = "not tested"
     if pd.notna(row["smallest_p"]):
         why = f"whether it is by chance cannot be told, as p is {row['smallest_p']:.2g} at best"
-    return f"The past of {source} for {target}: largest in layer {row['layer']}, {_size(row)}; {why}."
+    return f"From {source} to {target}, most in layer {row['layer']}: {_size(row)}; {why}."
 
 
 def _without_geometry(partial: pd.DataFrame, row: Any) -> Iterator[str]:

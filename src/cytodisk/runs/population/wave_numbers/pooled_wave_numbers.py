@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
@@ -73,10 +75,24 @@ def pool_waves(numbers: pd.DataFrame, cells: pd.DataFrame, options: PoolParamete
     found = Pool(population, options.compare, options, _PLACE, "mean", zero=[ORDER]).pooled()
     for name, table in found.tables.items():
         found.tables[name] = _tidy(table)
+    found.warnings = [_of_numbers(one) for one in found.warnings]
     said = wave_sentences(found.tables["pooled"], cells)
     said += difference_sentences(found.tables["comparisons"])
     found.sentences = [*said, *found.sentences]
     return found
+
+
+def _of_numbers(warning: dict[str, Any]) -> dict[str, Any]:
+    """A warning of windows in words for numbers of waves."""
+    if warning["name"] != "windows not tested":
+        return warning
+    return warning | {
+        "name": "numbers not tested",
+        "finding": warning["finding"].replace(" windows ", " numbers of waves "),
+        "consequence": "Whether they differ is not known.",
+        "remedy": "Only cells with waves have a speed, direction, period and persistence: compare the order, "
+        "or film more cells.",
+    }
 
 
 def _tidy(table: pd.DataFrame) -> pd.DataFrame:
