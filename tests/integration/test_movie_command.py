@@ -54,6 +54,8 @@ def test_a_movie_from_end_to_end(run: Run, masks: Path, signal: Path, tmp_path: 
         " µm/s, error of one sector ",
         "consecutive frames correlate by ",
         "empty windows 0",
+        "Does one of both predict the other? cytodisk predict ",
+        "Do waves run along the edge? cytodisk waves ",
         f"results: {out}",
     ):
         assert words in said

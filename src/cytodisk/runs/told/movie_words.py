@@ -87,8 +87,9 @@ def finding_line(study: "Study") -> Iterator[str]:
     yield f"Finding, cell {cell}: {finding.words}"
     if finding.command:
         yield f"Does the signal rise before the edge moves? {finding.command}"
-        asked = [shlex.join(["cytodisk", name, shown_path(str(study.path))]) for name in ("predict", "waves")]
-        yield f"Does one predict the other? {asked[0]}. Do waves run along the edge? {asked[1]}"
+        path = shown_path(str(study.path))
+        yield f"Does one of both predict the other? {shlex.join(['cytodisk', 'predict', path])}"
+        yield f"Do waves run along the edge? {shlex.join(['cytodisk', 'waves', path])}"
 
 
 def _bounds(edge: Any) -> list[str]:
