@@ -50,7 +50,36 @@ def write_page(app: Sphinx, _config: Any) -> None:
         "and your own columns behind ``label``: see :ref:`groups`.",
         "",
     ]
-    lines += run(
+    lines += derived()
+    lines += run("Shapes", "``cytodisk shapes`` writes this table.", {"shapes": SHAPE_STUDY.cells})
+    lines += ["The features follow; ``features.csv`` lists them, too.", "", *features()]
+    compared = tables_of(COMPARED_CELLS, COMPARED_MOVIE, COMPARED_NUCLEI)
+    lines += run("Comparisons of windows", "``cytodisk compare-windows`` writes these tables.", compared)
+    lines += ["``comparison_columns.csv`` explains the columns of the summaries, which are CSV files.", ""]
+    lines += run("Populations", "``cytodisk population`` writes these tables.", tables_of(POPULATION))
+    lines += [
+        "``cells`` also has the columns of the studies and of the table of groups, and the scalars of each "
+        "channel. Values are in the unit of the signal, or relative where cells were normalised.",
+        "",
+    ]
+    inputs = {"inputs": (INPUT, *INPUT_COLUMNS)}
+    lines += run("Many inputs", "``cytodisk batch`` writes this table, also as CSV.", inputs)
+    lines += [
+        "In the merged tables ``input``, your own columns and the units come before the columns above.",
+        "",
+    ]
+    write(Path(app.srcdir) / "reference" / "tables.rst", lines)
+
+
+def only_new(columns: Columns, known: Columns) -> Columns:
+    """The columns of a table that are not known yet."""
+    names = {column.name for column in known}
+    return tuple(column for column in columns if column.name not in names)
+
+
+def derived() -> list[str]:
+    """Sections of what is computed from a movie's results, and of what is pooled over a batch."""
+    lines = run(
         "Correlations",
         "``cytodisk correlate`` writes these tables into ``correlation/SIGNAL~WITH/``.",
         CORRELATION_TABLES,
@@ -78,30 +107,7 @@ def write_page(app: Sphinx, _config: Any) -> None:
         "``cytodisk waves`` of a batch writes these tables into ``waves/SIGNAL/`` of its folder.",
         POOLED_WAVE_TABLES,
     )
-    lines += run("Shapes", "``cytodisk shapes`` writes this table.", {"shapes": SHAPE_STUDY.cells})
-    lines += ["The features follow; ``features.csv`` lists them, too.", "", *features()]
-    compared = tables_of(COMPARED_CELLS, COMPARED_MOVIE, COMPARED_NUCLEI)
-    lines += run("Comparisons of windows", "``cytodisk compare-windows`` writes these tables.", compared)
-    lines += ["``comparison_columns.csv`` explains the columns of the summaries, which are CSV files.", ""]
-    lines += run("Populations", "``cytodisk population`` writes these tables.", tables_of(POPULATION))
-    lines += [
-        "``cells`` also has the columns of the studies and of the table of groups, and the scalars of each "
-        "channel. Values are in the unit of the signal, or relative where cells were normalised.",
-        "",
-    ]
-    inputs = {"inputs": (INPUT, *INPUT_COLUMNS)}
-    lines += run("Many inputs", "``cytodisk batch`` writes this table, also as CSV.", inputs)
-    lines += [
-        "In the merged tables ``input``, your own columns and the units come before the columns above.",
-        "",
-    ]
-    write(Path(app.srcdir) / "reference" / "tables.rst", lines)
-
-
-def only_new(columns: Columns, known: Columns) -> Columns:
-    """The columns of a table that are not known yet."""
-    names = {column.name for column in known}
-    return tuple(column for column in columns if column.name not in names)
+    return lines
 
 
 def tables_of(*kinds: StudyKind) -> dict[str, Columns]:
