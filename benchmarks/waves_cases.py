@@ -19,14 +19,31 @@ NOISES = {
     "neighbours alike, slow": ("slow", 3.0),
     "neighbours alike, oscillating": ("oscillating", 3.0),
 }
+BURSTS = "bursts"
+BURST_FRAMES, BURST_SECTORS = 5.0, 2.0  # standard deviations of a burst
 UM = 60.0  # length of the edge
 
 
 def noise(name: str, seed: int, frames: int, sectors: int) -> NDArray[np.float64]:
-    """Noise (time, sector) without a wave."""
+    """Noise (time, sector) without a wave: one of `NOISES`, or bursts."""
+    if name == BURSTS:
+        return bursts(seed, frames, sectors)
     kind, length = NOISES[name]
     found = cd.simulate.independent_series(kind, seed, frames, 1, sectors, correlation_length=length)[1]  # type: ignore[arg-type]
     return np.asarray(found.to_numpy())
+
+
+def bursts(seed: int, frames: int, sectors: int) -> NDArray[np.float64]:
+    """Smooth bumps (time, sector) at random times and places, on a floor of white noise."""
+    random = np.random.default_rng(seed)
+    count = frames * sectors // 50
+    at = random.uniform(-3.0 * BURST_FRAMES, frames + 3.0 * BURST_FRAMES, count)
+    place = random.uniform(0.0, sectors, count)
+    later = (np.arange(frames)[:, None] - at) / BURST_FRAMES
+    around = (np.arange(sectors)[:, None] - place + 0.5 * sectors) % sectors - 0.5 * sectors
+    sizes = random.exponential(2.0, count)
+    shapes = np.exp(-0.5 * later**2) * sizes, np.exp(-0.5 * (around / BURST_SECTORS) ** 2)
+    return np.asarray(shapes[0] @ shapes[1].T + 0.3 * random.normal(size=(frames, sectors)))
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import cytodisk as cd
 from cytodisk.errors import ParameterError
@@ -155,3 +156,13 @@ def test_lengths_that_do_not_fit_are_said(length: Any, words: str) -> None:
 def test_an_interval_that_contradicts_the_seconds_is_refused() -> None:
     with pytest.raises(ParameterError, match="leave frame_interval_s out"):
         cd.edge_waves(wave(), frame_interval_s=4.0, **FEW)
+
+
+@pytest.mark.parametrize(
+    ("sectors", "words"),
+    [([3, 2, 1, 0], "increase"), ([0, 1, 1, 2], "twice"), ([0, 1, 4, 5], "missing between")],
+)
+def test_sectors_out_of_their_order_around_the_cell_are_refused(sectors: list[int], words: str) -> None:
+    values = xr.DataArray(np.ones((20, 4)), dims=("time", "sector"), coords={"sector": sectors})
+    with pytest.raises(ParameterError, match=words):
+        cd.edge_waves(values, 5.0)

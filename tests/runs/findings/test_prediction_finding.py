@@ -173,6 +173,13 @@ def test_lines_by_layer(study: MadeStudy) -> None:
     assert lines[-1] == f"1 cell tested: {study.path}"
 
 
+@pytest.mark.parametrize(("q", "words"), [(0.01, "; mostly gone without"), (0.3, "; not without")])
+def test_a_layer_says_how_much_is_left_without_geometry(study: MadeStudy, q: float, words: str) -> None:
+    rows = pair(link(*PAIR, 0, 0.01, geometry=True, gain_partial=0.001, q_partial=q))
+    lines = prediction_lines(found_with(study, rows), study)
+    assert any(f"{words} geometry (0.1 %, q = {q:.2g})" in line for line in lines)
+
+
 def test_words() -> None:
     assert signal_words("velocity") == "edge velocity"
     assert signal_words("edge") == "signal 'edge'"

@@ -99,8 +99,24 @@ def named_values(values: Any, dims: tuple[str, ...]) -> xr.DataArray:
         raise ParameterError(f"{words}, got ({', '.join(map(str, values.dims))}){hint}")
     if values.dtype.kind not in "biuf" or not values.size:
         raise ParameterError(f"{words} and hold numbers, got {values.dtype} of shape {values.shape}")
+    _check_sectors(values)
     ordered: xr.DataArray = values.transpose(*dims)
     return ordered
+
+
+def _check_sectors(values: xr.DataArray) -> None:
+    """Sectors are taken as they follow each other around the cell: their numbers must say the same."""
+    if "sector" not in values.coords or values["sector"].dtype.kind not in "iuf":
+        return
+    numbers = values["sector"].to_numpy().astype(np.float64)
+    steps = np.diff(numbers)
+    if (steps <= 0).any():
+        raise ParameterError("the sectors of values must increase, none twice: pass values.sortby('sector')")
+    if steps.size and steps.max() > 1.5 * steps.min():
+        raise ParameterError(
+            f"sectors of values are missing between {numbers[0]:g} and {numbers[-1]:g}: put NaN there, as "
+            "values.reindex(sector=range(24)) does with 24 sectors"
+        )
 
 
 def numbers_along(values: xr.DataArray, dim: str) -> np.ndarray[Any, Any]:

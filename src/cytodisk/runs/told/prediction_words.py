@@ -41,9 +41,10 @@ def prediction_lines(found: "Prediction", study: "Study") -> Iterator[str]:
 
     settings = found.settings
     held = " and its neighbours'" if settings.get("neighbours", True) else ""
+    chance = f"; q of {settings['surrogates']} shifted sources" if settings["surrogates"] else ""
     yield (
-        f"Less error: than from the target's own past{held} alone; q of {settings['surrogates']} shifted "
-        "sources. Past: how far back the source is used."
+        f"Less error: than from the target's own past{held} alone{chance}. Past: how far back the source is "
+        "used."
     )
     cells = [int(cell) for cell in found.cells.loc[found.cells["status"] == "ok", "cell"]]
     for cell in cells[:_LAYERS_OF]:
@@ -97,6 +98,7 @@ def _direction_lines(found: "Prediction", study: "Study", cell: int, way: "Direc
 def _numbers(link: "JudgedLink", study: "Study") -> str:
     from cytodisk.runs.correlate.lag_words import time_apart
     from cytodisk.runs.link_words import effect_words, less_error
+    from cytodisk.runs.partial_words import SIGNIFICANT
 
     row, doubts = link.row, link.doubts
     interval = study.scale.frame_interval_s or math.nan
@@ -105,7 +107,9 @@ def _numbers(link: "JudgedLink", study: "Study") -> str:
     words += effect_words(row["source"], row["target"], row["effect"], link.turns)
     if math.isfinite(row["gain_partial"]):
         left = less_error(max(row["gain_partial"], 0.0)).removesuffix(" less error")
-        lost = "not " if row["geometry"] else ""
+        lost = ""
+        if row["geometry"]:
+            lost = "mostly gone " if row["q_partial"] < SIGNIFICANT else "not "
         words += f"; {lost}without geometry ({left}, q = {row['q_partial']:.2g})"
     return f"{words}; in doubt: {', '.join(doubts)}" if doubts else words
 
