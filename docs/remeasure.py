@@ -40,7 +40,7 @@ def main() -> None:
         "shapes": shapes.measure(chosen.data / "osteosarcoma" / "masks.tif", chosen.work, chosen.workers),
         "cells": cells.measure(chosen.data / "osteosarcoma" / "masks.tif", chosen.work, chosen.workers),
         "movies": movies.measure(chosen.data, chosen.work),
-        "frames": frames.measure(chosen.data),
+        "frames": frames.measure(chosen.data, chosen.work),
     }
     shutil.rmtree(FILES, ignore_errors=True)
     FILES.mkdir(parents=True)

@@ -18,9 +18,9 @@ GRIDS: dict[str, tuple[int, int, tuple[WindowMethod, ...]]] = {
     "30x60": (30, 60, ("newton", "edge", "springs")),
     "50x100": (50, 100, ("newton", "edge", "springs")),
 }
-MAPS: dict[str, tuple[int, int, tuple[WindowMethod, ...]]] = {
-    "maps_12x60": (12, 60, ("newton", "harmonic", "advection"))
-}
+MAPS = "maps"  # the comparison of maps; the others are of windows with and without one
+GRIDS[MAPS] = (12, 60, ("newton", "harmonic", "advection"))
+BESIDE = {"newton": "cytodisk", "edge": "edge-based", "springs": "with springs"}
 
 COLUMNS = {"completeness": "complete", "area_cv": "CV of area", "eccentricity_cv": "CV of eccentricity"}
 
@@ -30,7 +30,7 @@ def measure(masks: Path, work: Path, workers: int) -> dict[str, Comparison]:
     found = {}
     for name, (layers, sectors, methods) in GRIDS.items():
         print(f"osteosarcoma, {name}: {', '.join(methods)}", flush=True)
-        out = work / f"cells_{name}"
+        out = work / ("maps_12x60" if name == MAPS else f"cells_{name}")
         parameters = CompareWindowsParameters(
             layers=layers, sectors=sectors, methods=methods, fragments="largest"
         )
@@ -49,29 +49,30 @@ def write(found: dict[str, Any], files: Path) -> dict[str, Any]:
     for name in ("cells", "comparison"):
         shutil.copy(comparison.path / "figures" / f"{name}.png", files / f"{name}.png")
     by_layer(comparison).to_csv(files / "by_layer.csv", index=False)
-    by_method(comparison).to_csv(files / "by_method.csv", index=False)
+    by_method(found["cells"][MAPS], comparison).to_csv(files / "by_method.csv", index=False)
     grids(found["cells"]).to_csv(files / "grids.csv", index=False)
     return {"representatives": ", ".join(map(str, chosen))}
 
 
 def by_layer(comparison: Comparison) -> pd.DataFrame:
-    """Completeness and spread by layer, ours and edge-based ones beside each other."""
+    """Completeness and spread by layer, ours and edge-based ones with and without springs."""
     table = comparison.by_layer.set_index(["method", "layer"])
     rows = []
     for layer in sorted(set(comparison.by_layer["layer"])):
         row: dict[str, Any] = {"layer": layer}
         for name, title in COLUMNS.items():
-            for method, whose in (("newton", "cytodisk"), ("edge", "edge-based")):
+            for method, whose in BESIDE.items():
                 value = table.loc[(method, layer), name]
                 row[f"{title}, {whose}"] = percent(value) if name == "completeness" else f"{value:.3f}"
         rows.append(row)
     return pd.DataFrame(rows)
 
 
-def by_method(comparison: Comparison) -> pd.DataFrame:
-    """What each method made of all cells."""
+def by_method(maps: Comparison, windows: Comparison) -> pd.DataFrame:
+    """What each method made of all cells: maps, then windows that need none."""
     rows = []
-    for row in comparison.by_method.itertuples():
+    others = windows.by_method[windows.by_method["method"] != "newton"]
+    for row in (*maps.by_method.itertuples(), *others.itertuples()):
         on_map = pd.notna(row.area_error)
         rows.append(
             {
@@ -93,7 +94,7 @@ def grids(found: dict[str, Comparison]) -> pd.DataFrame:
     """Completeness at coarse and fine grids: in all, and in the emptiest layer."""
     rows = []
     for name, comparison in found.items():
-        for method in ("newton", "edge"):
+        for method in BESIDE if name != MAPS else ():
             own = comparison.by_layer[comparison.by_layer["method"] == method]
             rows.append(
                 {

@@ -1,18 +1,19 @@
 """The paper's claims beside what was measured here, each with a verdict that the numbers give."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from remeasured.cells import percent
+from remeasured.cells import MAPS, percent
 from remeasured.maps import PUBLISHED
-from remeasured.movies import PEAK, summaries
+from remeasured.movies import BESIDE, PEAK, summaries
 
 UNIFORM = 0.1  # largest coefficient of variation of areas that are called alike
 HIGH = 0.7  # least correlation that is called high
+BASED_ON_EDGE = {method: BESIDE[method] for method in ("edge", "springs")}
 
 
 class Claim(NamedTuple):
@@ -33,7 +34,8 @@ def write(found: dict[str, Any], files: Path) -> dict[str, Any]:
 
 def shape_claims(found: dict[str, Any]) -> Iterator[Claim]:
     """Section 4.1 and Fig. 3."""
-    emptiest = {name: float(ours_by_layer(one)["completeness"].min()) for name, one in found["cells"].items()}
+    windows = {name: one for name, one in found["cells"].items() if name != MAPS}
+    emptiest = {name: float(of_layers(one, "newton")["completeness"].min()) for name, one in windows.items()}
     published = pd.read_csv(PUBLISHED)["windows_percent"]
     yield Claim(
         "u-Unwrap windows sample signal in every window (4.1)",
@@ -42,26 +44,39 @@ def shape_claims(found: dict[str, Any]) -> Iterator[Claim]:
         + f"; 10 × 60 windows of the published program: {published.min():g} to {published.max():g} %",
         "yes, with our windows" if min(emptiest.values()) == 1.0 else "no",
     )
-    ours, edge = ours_by_layer(found["cells"]["12x60"]), edge_by_layer(found["cells"]["12x60"])
-    fall = edge["completeness"].to_numpy()
+    ours = of_layers(windows["12x60"], "newton")
+    others = {name: of_layers(windows["12x60"], method) for method, name in BASED_ON_EDGE.items()}
+    falls = {name: table["completeness"].to_numpy() for name, table in others.items()}
     yield Claim(
         "completeness of edge-based windows decreases rapidly with depth (4.1, Fig. 3B)",
-        f"{percent(fall[0])} in layer 0, {percent(fall[len(fall) // 2])} in layer {len(fall) // 2}, "
-        f"{percent(fall[-1])} in the last",
-        yes(bool((np.diff(fall) <= 0).all()) and fall[-1] < 0.5 * fall[0]),
+        "; ".join(
+            f"{name}: {percent(fall[0])} in layer 0, {percent(fall[len(fall) // 2])} in layer "
+            f"{len(fall) // 2}, {percent(fall[-1])} in the last"
+            for name, fall in falls.items()
+        ),
+        each(
+            {
+                name: bool((np.diff(fall) <= 0).all()) and fall[-1] < 0.5 * fall[0]
+                for name, fall in falls.items()
+            }
+        ),
     )
-    higher = [layer for layer in layers_not_below(ours, edge, "eccentricity_cv") if layer > 0]
+    higher = {name: higher_inside(ours, table) for name, table in others.items()}
     yield Claim(
         "eccentricity varies less than that of edge-based windows after the first layer (4.1, Fig. 3B)",
-        f"coefficient of variation by layer: ours {span(ours['eccentricity_cv'])}, edge-based "
-        f"{span(edge['eccentricity_cv'])}"
-        + (f"; after the first layer ours is not lower in {listed(higher)}" if higher else ""),
-        yes(not higher),
+        f"coefficient of variation by layer: ours {span(ours['eccentricity_cv'])}, "
+        + ", ".join(f"{name} {span(table['eccentricity_cv'])}" for name, table in others.items())
+        + "".join(
+            f"; after the first layer ours is not lower than {name} in {listed(layers)}"
+            for name, layers in higher.items()
+            if layers
+        ),
+        each({name: not layers for name, layers in higher.items()}),
     )
     yield Claim(
         "windows are relatively uniform within each layer (4.1)",
-        f"coefficient of variation of area by layer: ours {span(ours['area_cv'])}, edge-based "
-        f"{span(edge['area_cv'])}",
+        f"coefficient of variation of area by layer: ours {span(ours['area_cv'])}, "
+        + ", ".join(f"{name} {span(table['area_cv'])}" for name, table in others.items()),
         yes(bool((ours["area_cv"] < UNIFORM).all())),
     )
 
@@ -69,47 +84,70 @@ def shape_claims(found: dict[str, Any]) -> Iterator[Claim]:
 def movie_claims(found: dict[str, Any]) -> Iterator[Claim]:
     """Section 4.2 and Fig. 4."""
     table = summaries(found["movies"])
-    ours, edge = (table[table["method"] == method].set_index("movie") for method in ("newton", "edge"))
-    pairs = [(name, ours.loc[name], edge.loc[name]) for name in ours.index]
+    by_method = {
+        method: table[table["method"] == method].set_index("movie") for method in ("newton", *BESIDE)
+    }
+    ours = by_method["newton"]
+    names = list(ours.index)
+    others = {name: by_method[method] for method, name in BESIDE.items()}
+    on_edge = {name: others[name] for name in BASED_ON_EDGE.values()}
+
+    def told(words: Callable[[Any], str]) -> str:
+        """Words for each movie and kind of windows."""
+        return "; ".join(
+            f"{movie}: ours {words(ours.loc[movie])}, "
+            + ", ".join(f"{name} {words(rows.loc[movie])}" for name, rows in others.items())
+            for movie in names
+        )
+
+    def held(holds: Callable[[Any, Any], bool], against: dict[str, Any]) -> str:
+        """A verdict for each kind of windows, over the movies."""
+        return each_over(
+            {
+                name: [bool(holds(ours.loc[movie], rows.loc[movie])) for movie in names]
+                for name, rows in against.items()
+            }
+        )
+
     yield Claim(
         "edge-based windows severely undersample inner layers (4.2, Fig. 4B)",
-        "; ".join(
-            f"{n}: emptiest layer {percent(b.emptiest)}, ours {percent(a.emptiest)}" for n, a, b in pairs
-        ),
-        over([b.emptiest < 0.5 and a.emptiest == 1.0 for _, a, b in pairs]),
+        "emptiest layer: " + told(lambda row: percent(row.emptiest)),
+        held(lambda a, b: b.emptiest < 0.5 and a.emptiest == 1.0, on_edge),
     )
     yield Claim(
         "correlations of consecutive frames are consistently high, and more alike over layers than with "
         "edge-based windows (4.2, Fig. 4C)",
-        "mean (lowest to highest layer): "
-        + "; ".join(f"{n}: ours {correlations(a)}, edge-based {correlations(b)}" for n, a, b in pairs),
-        f"above {HIGH:g} in every layer: {over([a.correlation_least > HIGH for _, a, _ in pairs])}; "
-        f"more alike: {over([spread(a) < spread(b) for _, a, b in pairs])}; "
-        f"higher than edge-based: {over([a.correlation > b.correlation for _, a, b in pairs])}",
+        "mean (lowest to highest layer): " + told(correlations),
+        f"above {HIGH:g} in every layer: {over([ours.loc[n].correlation_least > HIGH for n in names])}; "
+        f"more alike: {held(lambda a, b: spread(a) < spread(b), others)}; "
+        f"higher: {held(lambda a, b: a.correlation > b.correlation, others)}",
     )
     yield Claim(
         "displacements of windows have similar magnitudes with both (4.2, Fig. 4D)",
-        "; ".join(
-            f"{n}: ours {a.displacement:.3g}, edge-based {b.displacement:.3g} {a.unit} a frame"
-            for n, a, b in pairs
-        ),
-        over([0.5 < a.displacement / b.displacement < 2.0 for _, a, b in pairs]),
+        told(lambda row: f"{row.displacement:.3g} {row.unit} a frame"),
+        held(lambda a, b: 0.5 < a.displacement / b.displacement < 2.0, on_edge),
     )
     yield Claim(
         "edge-based windows have peaks of displacement, which ours have not (4.2, Fig. 4D)",
+        f"steps above {PEAK:g} times the median of their own, and the largest: "
+        + told(lambda row: f"{row.peaks} of {row.steps} ({row.largest:.3g} {row.unit})"),
+        held(lambda a, b: b.peaks > 0 and a.peaks == 0, on_edge),
+    )
+    registered = others[BESIDE["registered"]]
+    yield Claim(
+        "thin necks, protrusions and branches make the field of a nonrigid registration ambiguous (2)",
         "; ".join(
-            f"{n}: ours {a.peaks} (largest {a.largest:.3g} {a.unit}), "
-            f"edge-based {b.peaks} ({b.largest:.3g} {a.unit}) "
-            f"of {a.steps} steps are above {PEAK:g} times the median of their own"
-            for n, a, b in pairs
+            f"{movie}: the field folds in {percent(row.folded)} of the cell, {percent(row.outside)} of its "
+            f"windows is carried outside, {percent(1.0 - row.coverage)} of the cell is in none"
+            for movie, row in ((movie, registered.loc[movie]) for movie in names)
         ),
-        over([bool(b.peaks > 0 and a.peaks == 0) for _, a, b in pairs]),
+        "folds: " + over([registered.loc[movie].folded > 0 for movie in names]),
     )
 
 
 def map_claims(found: dict[str, Any]) -> Iterator[Claim]:
     """Appendix A.2: the map."""
-    methods = found["cells"]["12x60"].by_method.set_index("method")
+    methods = found["cells"][MAPS].by_method.set_index("method")
     error, spread_of_areas = methods["area_error"], methods["area_cv"]
     yield Claim(
         "relaxation turns the conformal map into an equiareal one (A.2.1 iii)",
@@ -131,8 +169,9 @@ def map_claims(found: dict[str, Any]) -> Iterator[Claim]:
 def numbers(found: dict[str, Any]) -> dict[str, Any]:
     """What the page's sentences quote."""
     comparison = found["cells"]["12x60"]
-    methods = comparison.by_method.set_index("method")
-    ours, edge = ours_by_layer(comparison), edge_by_layer(comparison)
+    methods = found["cells"][MAPS].by_method.set_index("method")
+    ours, edge = (of_layers(comparison, method) for method in ("newton", "edge"))
+    springs = of_layers(comparison, "springs")
     published = pd.read_csv(PUBLISHED)
     return {
         "n_tried": f"{methods.loc['newton', 'tried']:.0f}",
@@ -140,6 +179,14 @@ def numbers(found: dict[str, Any]) -> dict[str, Any]:
         "higher_eccentricity": listed(layers_not_below(ours, edge, "eccentricity_cv")),
         "higher_area": listed(layers_not_below(ours, edge, "area_cv")),
         "higher_mean": listed(layers_not_below(ours, edge, "eccentricity")),
+        "springs_eccentricity": listed(layers_not_below(ours, springs, "eccentricity_cv")),
+        "springs_area": listed(layers_not_below(ours, springs, "area_cv")),
+        "springs_mean": listed(layers_not_below(ours, springs, "eccentricity")),
+        "springs_complete": percent(springs["completeness"].mean()),
+        "edge_complete": percent(edge["completeness"].mean()),
+        "springs_last": percent(springs["completeness"].iloc[-1]),
+        "springs_area_cv": f"{springs['area_cv'].median():.3f}",
+        "edge_area_cv": f"{edge['area_cv'].median():.3f}",
         "widest_layer": int(ours["eccentricity_cv"].idxmax()),
         "widest": f"{ours['eccentricity_cv'].max():.2f}",
         "roundest_layer": int(ours["eccentricity"].idxmin()),
@@ -154,19 +201,22 @@ def numbers(found: dict[str, Any]) -> dict[str, Any]:
         "published_masks": published["mask"].nunique(),
         "published_seconds": f"{published['seconds'].min()} to {published['seconds'].max()}",
         "published_closer": published_closer(found["maps"], published),
-        "steadier": steadier(found["movies"]),
-        "ours_peaks": peaks(found["movies"]),
+        **{f"steadier_{method}": steadier(found["movies"], method) for method in BESIDE},
+        **{
+            f"{method}_peaks": peaks(found["movies"], method)
+            for method in ("newton", "springs", "registered")
+        },
     }
 
 
-def ours_by_layer(comparison: Any) -> pd.DataFrame:
-    """Measures of the windows on our map, by layer."""
-    return comparison.by_layer[comparison.by_layer["method"] == "newton"].set_index("layer")
+def of_layers(comparison: Any, method: str) -> pd.DataFrame:
+    """Measures of the windows of a method, by layer."""
+    return comparison.by_layer[comparison.by_layer["method"] == method].set_index("layer")
 
 
-def edge_by_layer(comparison: Any) -> pd.DataFrame:
-    """Measures of edge-based windows, by layer."""
-    return comparison.by_layer[comparison.by_layer["method"] == "edge"].set_index("layer")
+def higher_inside(ours: pd.DataFrame, theirs: pd.DataFrame) -> list[int]:
+    """Layers after the first in which the eccentricity of our windows does not vary less."""
+    return [layer for layer in layers_not_below(ours, theirs, "eccentricity_cv") if layer > 0]
 
 
 def layers_not_below(ours: pd.DataFrame, edge: pd.DataFrame, name: str) -> list[int]:
@@ -181,19 +231,19 @@ def published_closer(maps: pd.DataFrame, published: pd.DataFrame) -> int:
     return int((theirs < ours[theirs.index].round(2)).sum())
 
 
-def steadier(movies: dict[str, Any]) -> str:
-    """In how many movies windows on our map move less, and consecutive frames are more alike."""
+def steadier(movies: dict[str, Any], method: str) -> str:
+    """In how many movies our windows move less than a method's, and consecutive frames are more alike."""
     table = summaries(movies).set_index(["method", "movie"])
-    ours, edge = table.loc["newton"], table.loc["edge"]
-    both = (ours["displacement"] < edge["displacement"]) & (ours["correlation"] > edge["correlation"])
+    ours, theirs = table.loc["newton"], table.loc[method]
+    both = (ours["displacement"] < theirs["displacement"]) & (ours["correlation"] > theirs["correlation"])
     return f"{int(both.sum())} of {len(both)}"
 
 
-def peaks(movies: dict[str, Any]) -> str:
-    """How many steps of our windows are peaks, by movie."""
+def peaks(movies: dict[str, Any], method: str) -> str:
+    """How many steps of a method's windows are peaks, by movie."""
     table = summaries(movies)
-    ours = table[table["method"] == "newton"]
-    return ", ".join(f"{row.peaks} of {row.steps} ({row.movie})" for row in ours.itertuples())
+    rows = table[table["method"] == method]
+    return ", ".join(f"{row.peaks} of {row.steps} ({row.movie})" for row in rows.itertuples())
 
 
 def span(values: "pd.Series[float]") -> str:
@@ -225,6 +275,20 @@ def yes(holds: bool) -> str:
 def over(holds: list[bool]) -> str:
     """A verdict over the movies."""
     return "yes" if all(holds) else f"in {sum(holds)} of {len(holds)} movies" if any(holds) else "no"
+
+
+def each(holds: dict[str, bool]) -> str:
+    """A verdict against each kind of windows, in one word where they agree."""
+    return each_over({name: [one] for name, one in holds.items()})
+
+
+def each_over(holds: dict[str, list[bool]]) -> str:
+    """The same over the movies."""
+    verdicts = {name: over(found) for name, found in holds.items()}
+    alike = set(verdicts.values())
+    return (
+        alike.pop() if len(alike) == 1 else "; ".join(f"{name}: {words}" for name, words in verdicts.items())
+    )
 
 
 def listed(layers: list[int]) -> str:

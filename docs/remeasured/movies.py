@@ -25,6 +25,7 @@ MOVIES: dict[str, tuple[str, str, dict[str, Any]]] = {
         {"channels": ("Rac1",), "frame_interval_s": 1.29},
     ),
 }
+BESIDE = {"edge": "edge-based", "springs": "with springs", "registered": "registered"}
 LAYERS, SECTORS = 10, 60  # about as many sectors as in the paper
 METHODS: tuple[MovieMethod, ...] = ("newton", "harmonic", "edge", "springs", "registered")
 PEAK = 3.0  # times the median displacement: a step at which windows are mistracked
@@ -79,6 +80,10 @@ def summary(name: str, comparison: Comparison, method: str) -> dict[str, Any]:
         "correlation_least": correlation.min(),
         "correlation_most": correlation.max(),
         "layers_without": int(correlation.isna().sum()),
+        "folded": comparison.by_method.set_index("method").loc[method].get("folded"),
+        "outside": comparison.by_method.set_index("method").loc[method].get("carried_outside"),
+        "eccentricity": layers["eccentricity"].mean(),
+        "eccentricity_cv": layers["eccentricity_cv"].mean(),
         "displacement": moved.mean(),
         "peaks": int((moved > PEAK * moved.median()).sum()),
         "largest": moved.max(),
@@ -99,6 +104,8 @@ def words(table: pd.DataFrame) -> pd.DataFrame:
                 "with signal": percent(row.complete),
                 "emptiest layer": percent(row.emptiest),
                 "area covered": percent(row.coverage),
+                "field folds, carried outside": two_shares(row.folded, row.outside),
+                "eccentricity (CV)": f"{row.eccentricity:.2f} ({row.eccentricity_cv:.3f})",
                 "correlation of consecutive frames, mean (lowest to highest layer)": correlation,
                 "layers without one": row.layers_without,
                 "displacement of centroids a frame": f"{row.displacement:.3g} {row.unit}",
@@ -106,3 +113,8 @@ def words(table: pd.DataFrame) -> pd.DataFrame:
             }
         )
     return pd.DataFrame(rows)
+
+
+def two_shares(folded: float, outside: float) -> str:
+    """What a registration did to windows, in words; nothing for the others."""
+    return f"{percent(folded)}, {percent(outside)}" if pd.notna(folded) else "–"

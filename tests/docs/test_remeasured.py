@@ -22,7 +22,7 @@ def claims() -> Any:
     return claims
 
 
-def comparison(**edge: list[float]) -> SimpleNamespace:
+def comparison(springs: dict[str, list[float]] | None = None, **edge: list[float]) -> SimpleNamespace:
     """A comparison of three layers, with the measures of edge-based windows that are given."""
     ours = {
         "completeness": [1.0] * 3,
@@ -35,7 +35,7 @@ def comparison(**edge: list[float]) -> SimpleNamespace:
     )
     tables = [
         pd.DataFrame(values).assign(layer=range(3), method=name)
-        for name, values in (("newton", ours), ("edge", theirs))
+        for name, values in (("newton", ours), ("edge", theirs), ("springs", theirs | (springs or {})))
     ]
     methods = pd.DataFrame(
         {
@@ -49,7 +49,7 @@ def comparison(**edge: list[float]) -> SimpleNamespace:
     return SimpleNamespace(by_layer=pd.concat(tables), by_method=methods)
 
 
-def verdicts(claims: Any, **edge: list[float]) -> list[str]:
+def verdicts(claims: Any, **edge: Any) -> list[str]:
     one = comparison(**edge)
     return [claim.verdict for claim in claims.shape_claims({"cells": {"12x60": one}})]
 
@@ -68,11 +68,68 @@ def test_one_layer_with_more_variation_of_ours_is_a_no_and_so_is_a_missing_one(c
     assert verdicts(claims, eccentricity_cv=[0.05, 0.2, 0.2])[2] == "yes"  # the claim leaves layer 0 out
 
 
+def test_verdicts_name_the_windows_where_they_differ(claims: Any) -> None:
+    found = verdicts(claims, springs={"completeness": [1.0, 0.9, 0.8], "eccentricity_cv": [0.1] * 3})
+    assert found[1] == found[2] == "edge-based: yes; with springs: no"
+
+
+def movie(method: str, frames: int, **measures: float) -> tuple[pd.DataFrame, ...]:
+    """Rows of one method in a comparison of a movie, two layers, the same in all frames."""
+    consistency = pd.DataFrame(
+        [
+            {
+                "method": method,
+                "channel": "VASP",
+                "frame": frame,
+                "layer": layer,
+                "correlation": measures.get("correlation", 0.9),
+                "centroid_displacement": measures.get("moved", 1.0) * (10.0 if frame == 1 else 1.0),
+            }
+            for frame in range(frames)
+            for layer in range(10)
+        ]
+    )
+    complete = measures.get("completeness", 1.0)
+    layers = pd.DataFrame({"layer": range(10), "completeness": complete}).assign(
+        method=method, eccentricity=0.8, eccentricity_cv=0.1
+    )
+    by_method = pd.DataFrame(
+        [{"method": method, "coverage": 1.0, "folded": measures.get("folded", float("nan"))}]
+    )
+    return consistency, layers, by_method.assign(carried_outside=measures.get("folded", float("nan")))
+
+
+def test_movies_are_compared_with_each_kind_of_windows(claims: Any) -> None:
+    parts = [
+        movie("newton", 8),
+        movie("edge", 8, completeness=0.4, correlation=0.8, moved=3.0),
+        movie("springs", 8, completeness=0.6, correlation=0.95),
+        movie("registered", 8, folded=0.02),
+    ]
+    consistency, layers, by_method = (
+        pd.concat(tables, ignore_index=True) for tables in zip(*parts, strict=True)
+    )
+    one = SimpleNamespace(
+        consistency=consistency,
+        by_layer=layers,
+        by_method=by_method,
+        methods=("newton", "edge", "springs", "registered"),
+        provenance={"length_unit": "px"},
+    )
+    found = list(claims.movie_claims({"movies": {"melanoma": one}}))
+    assert found[0].verdict == "edge-based: yes; with springs: no"
+    assert "higher: edge-based: yes; with springs: no; registered: no" in found[1].verdict
+    assert found[2].verdict == "edge-based: no; with springs: yes"
+    assert found[3].verdict == "no"  # ours has a peak, too
+    assert found[4].here.startswith("melanoma: the field folds in 2 % of the cell")
+    assert found[4].verdict == "folds: yes"
+
+
 def test_flips_that_leave_triangles_turned_over_do_not_ensure_bijectivity(claims: Any) -> None:
     one = comparison()
-    assert [claim.verdict for claim in claims.map_claims({"cells": {"12x60": one}})][1] == "no"
+    assert [claim.verdict for claim in claims.map_claims({"cells": {"maps": one}})][1] == "no"
     one.by_method.loc[one.by_method["method"] == "advection", "invalid_maps"] = 0
-    assert [claim.verdict for claim in claims.map_claims({"cells": {"12x60": one}})][1] == "yes"
+    assert [claim.verdict for claim in claims.map_claims({"cells": {"maps": one}})][1] == "yes"
 
 
 def test_the_written_page_came_from_the_template() -> None:
