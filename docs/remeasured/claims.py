@@ -287,7 +287,7 @@ def each_over(holds: dict[str, list[bool]]) -> str:
     verdicts = {name: over(found) for name, found in holds.items()}
     alike = set(verdicts.values())
     return (
-        alike.pop() if len(alike) == 1 else "; ".join(f"{name}: {words}" for name, words in verdicts.items())
+        alike.pop() if len(alike) == 1 else ", ".join(f"{name} {words}" for name, words in verdicts.items())
     )
 
 

@@ -70,7 +70,7 @@ def test_one_layer_with_more_variation_of_ours_is_a_no_and_so_is_a_missing_one(c
 
 def test_verdicts_name_the_windows_where_they_differ(claims: Any) -> None:
     found = verdicts(claims, springs={"completeness": [1.0, 0.9, 0.8], "eccentricity_cv": [0.1] * 3})
-    assert found[1] == found[2] == "edge-based: yes; with springs: no"
+    assert found[1] == found[2] == "edge-based yes, with springs no"
 
 
 def movie(method: str, frames: int, **measures: float) -> tuple[pd.DataFrame, ...]:
@@ -117,9 +117,9 @@ def test_movies_are_compared_with_each_kind_of_windows(claims: Any) -> None:
         provenance={"length_unit": "px"},
     )
     found = list(claims.movie_claims({"movies": {"melanoma": one}}))
-    assert found[0].verdict == "edge-based: yes; with springs: no"
-    assert "higher: edge-based: yes; with springs: no; registered: no" in found[1].verdict
-    assert found[2].verdict == "edge-based: no; with springs: yes"
+    assert found[0].verdict == "edge-based yes, with springs no"
+    assert "higher: edge-based yes, with springs no, registered no" in found[1].verdict
+    assert found[2].verdict == "edge-based no, with springs yes"
     assert found[3].verdict == "no"  # ours has a peak, too
     assert found[4].here.startswith("melanoma: the field folds in 2 % of the cell")
     assert found[4].verdict == "folds: yes"
