@@ -16,7 +16,7 @@ from typing import Any
 import pandas as pd
 
 sys.path.insert(0, str(Path(__file__).parent))
-from remeasured import cells, claims, frames, maps, movies, shapes
+from remeasured import cells, claims, frames, maps, movies, shapes, times
 from remeasured.page import write_page
 
 HERE = Path(__file__).parent
@@ -31,6 +31,16 @@ def main() -> None:
     parser.add_argument("--data", type=Path, default=data_folder())
     parser.add_argument("--work", type=Path, default=HERE / "_build" / "remeasured")
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument(
+        "--maps",
+        type=Path,
+        help="comparison of maps of the same cells, made before, to take in place of a new one",
+    )
+    parser.add_argument(
+        "--keep-times",
+        action="store_true",
+        help="keep the times on the page that stands, as other work shares the machine; the page says so",
+    )
     chosen = parser.parse_args()
     if not (chosen.data / "osteosarcoma" / "masks.tif").exists():
         sys.exit(f"{chosen.data} has no osteosarcoma/masks.tif: set CYTODISK_DATA or pass --data")
@@ -38,13 +48,16 @@ def main() -> None:
         "maps": maps.measure(chosen.data / "reference_masks"),
         "free_flips": maps.free_flips(chosen.data / "reference_masks"),
         "shapes": shapes.measure(chosen.data / "osteosarcoma" / "masks.tif", chosen.work, chosen.workers),
-        "cells": cells.measure(chosen.data / "osteosarcoma" / "masks.tif", chosen.work, chosen.workers),
+        "cells": cells.measure(
+            chosen.data / "osteosarcoma" / "masks.tif", chosen.work, chosen.workers, chosen.maps
+        ),
         "movies": movies.measure(chosen.data, chosen.work),
         "frames": frames.measure(chosen.data, chosen.work),
     }
+    kept = times.of_page(FILES) if chosen.keep_times else None
     shutil.rmtree(FILES, ignore_errors=True)
     FILES.mkdir(parents=True)
-    numbers: dict[str, Any] = {}
+    numbers: dict[str, Any] = {"times": times.MEASURED}
     writers: tuple[Callable[[dict[str, Any], Path], dict[str, Any]], ...] = (
         maps.write,
         shapes.write,
@@ -55,6 +68,8 @@ def main() -> None:
     )
     for write in writers:
         numbers |= write(found, FILES)
+    if kept is not None:
+        numbers |= times.put(FILES, kept)
     write_page(PAGE, numbers)
     print(pd.read_csv(FILES / "claims.csv").to_string())
     print(f"written: {PAGE}")

@@ -1,5 +1,6 @@
 """Windows of each method on every osteosarcoma cell: Fig. 3 of the paper."""
 
+import hashlib
 import shutil
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ import pandas as pd
 from cytodisk.pages.compared_cells import write_compared_cells
 from cytodisk.pages.compared_layers import write_comparison
 from cytodisk.runs.compare_windows.compare_parameters import TITLES, CompareWindowsParameters, WindowMethod
-from cytodisk.runs.compare_windows.comparison import Comparison
+from cytodisk.runs.compare_windows.comparison import Comparison, open_comparison
 from cytodisk.runs.compare_windows.run_compare_windows import run_compare_windows
 from remeasured import shapes
 
@@ -25,10 +26,13 @@ BESIDE = {"newton": "cytodisk", "edge": "edge-based", "springs": "with springs"}
 COLUMNS = {"completeness": "complete", "area_cv": "CV of area", "eccentricity_cv": "CV of eccentricity"}
 
 
-def measure(masks: Path, work: Path, workers: int) -> dict[str, Comparison]:
-    """One comparison a grid."""
+def measure(masks: Path, work: Path, workers: int, maps: Path | None = None) -> dict[str, Comparison]:
+    """One comparison a grid; that of maps can be one that was made before."""
     found = {}
     for name, (layers, sectors, methods) in GRIDS.items():
+        if name == MAPS and maps is not None:
+            found[name] = made_before(maps, masks)
+            continue
         print(f"osteosarcoma, {name}: {', '.join(methods)}", flush=True)
         out = work / ("maps_12x60" if name == MAPS else f"cells_{name}")
         parameters = CompareWindowsParameters(
@@ -36,6 +40,25 @@ def measure(masks: Path, work: Path, workers: int) -> dict[str, Comparison]:
         )
         found[name] = run_compare_windows(
             masks, out, parameters=parameters, workers=workers, **shapes.again(out)
+        )
+    return found
+
+
+def made_before(maps: Path, masks: Path) -> Comparison:
+    """A comparison of maps that stands, if it is of these cells by these methods and this grid."""
+    found = open_comparison(maps)
+    layers, sectors, methods = GRIDS[MAPS]
+    provenance = found.provenance
+    parameters = {"fragments": "largest"} | provenance["parameters"]  # there was no choice at first
+    asked = (layers, sectors, "largest", hashlib.sha256(masks.read_bytes()).hexdigest())
+    given = (
+        *(parameters.get(name) for name in ("layers", "sectors", "fragments")),
+        provenance["inputs"]["masks"]["sha256"],
+    )
+    if asked != given or not set(methods) <= set(found.methods):
+        raise SystemExit(
+            f"{maps} is no comparison of {', '.join(methods)} with {layers} × {sectors} windows on the "
+            f"largest pieces of {masks}: pass another folder as --maps, or leave it out"
         )
     return found
 
@@ -51,7 +74,11 @@ def write(found: dict[str, Any], files: Path) -> dict[str, Any]:
     by_layer(comparison).to_csv(files / "by_layer.csv", index=False)
     by_method(found["cells"][MAPS], comparison).to_csv(files / "by_method.csv", index=False)
     grids(found["cells"]).to_csv(files / "grids.csv", index=False)
-    return {"representatives": ", ".join(map(str, chosen))}
+    made = found["cells"][MAPS].provenance
+    return {
+        "representatives": ", ".join(map(str, chosen)),
+        "maps_made": f"{made['started'][:10]}, by cytodisk {made['versions']['cytodisk']}",
+    }
 
 
 def by_layer(comparison: Comparison) -> pd.DataFrame:
@@ -72,7 +99,8 @@ def by_method(maps: Comparison, windows: Comparison) -> pd.DataFrame:
     """What each method made of all cells: maps, then windows that need none."""
     rows = []
     others = windows.by_method[windows.by_method["method"] != "newton"]
-    for row in (*maps.by_method.itertuples(), *others.itertuples()):
+    on_maps = maps.by_method[maps.by_method["method"].isin(GRIDS[MAPS][2])]
+    for row in (*on_maps.itertuples(), *others.itertuples()):
         on_map = pd.notna(row.area_error)
         rows.append(
             {
@@ -108,6 +136,8 @@ def grids(found: dict[str, Comparison]) -> pd.DataFrame:
 
 
 def percent(share: float) -> str:
-    """A share in words; 100 % only if it is all."""
+    """A share in words; 100 % only if it is all, 0 % only if there is nothing."""
     text = f"{100 * share:.1f}"
-    return f"{'> 99.9' if text == '100.0' and share < 1 else text.removesuffix('.0')} %"
+    if text == "100.0" and share < 1:
+        return "> 99.9 %"
+    return "< 0.1 %" if text == "0.0" and share > 0 else f"{text.removesuffix('.0')} %"

@@ -201,7 +201,8 @@ def numbers(found: dict[str, Any]) -> dict[str, Any]:
         "published_masks": published["mask"].nunique(),
         "published_seconds": f"{published['seconds'].min()} to {published['seconds'].max()}",
         "published_closer": published_closer(found["maps"], published),
-        **{f"steadier_{method}": steadier(found["movies"], method) for method in BESIDE},
+        **{f"steadier_{method}": steadier(found["movies"], method) for method in BASED_ON_EDGE},
+        **registered_words(found["movies"]),
         **{
             f"{method}_peaks": peaks(found["movies"], method)
             for method in ("newton", "springs", "registered")
@@ -237,6 +238,22 @@ def steadier(movies: dict[str, Any], method: str) -> str:
     ours, theirs = table.loc["newton"], table.loc[method]
     both = (ours["displacement"] < theirs["displacement"]) & (ours["correlation"] > theirs["correlation"])
     return f"{int(both.sum())} of {len(both)}"
+
+
+def registered_words(movies: dict[str, Any]) -> dict[str, str]:
+    """How registered windows and ours compare; which share of them is filled, and of the cell is in them."""
+    table = summaries(movies).set_index(["method", "movie"])
+    ours, theirs = table.loc["newton"], table.loc["registered"]
+    calmer = theirs["displacement"] < ours["displacement"]
+    alike = theirs["correlation"] > ours["correlation"]
+    kept = ", ".join(
+        f"{percent(row.complete)} and {percent(row.coverage)} ({movie})" for movie, row in theirs.iterrows()
+    )
+    return {
+        "calmer_registered": f"{int(calmer.sum())} of {len(calmer)}",
+        "alike_registered": f"{int(alike.sum())} of {len(alike)}",
+        "registered_kept": kept,
+    }
 
 
 def peaks(movies: dict[str, Any], method: str) -> str:
