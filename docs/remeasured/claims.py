@@ -13,6 +13,7 @@ from remeasured.movies import BESIDE, PEAK, summaries
 
 UNIFORM = 0.1  # largest coefficient of variation of areas that are called alike
 HIGH = 0.7  # least correlation that is called high
+FOLDED = 0.01  # share of the cell above which a field is said to fold
 BASED_ON_EDGE = {method: BESIDE[method] for method in ("edge", "springs")}
 
 
@@ -141,7 +142,8 @@ def movie_claims(found: dict[str, Any]) -> Iterator[Claim]:
             f"windows is carried outside, {percent(1.0 - row.coverage)} of the cell is in none"
             for movie, row in ((movie, registered.loc[movie]) for movie in names)
         ),
-        "folds: " + over([registered.loc[movie].folded > 0 for movie in names]),
+        f"folds in more than {percent(FOLDED)}: "
+        + over([registered.loc[movie].folded > FOLDED for movie in names]),
     )
 
 

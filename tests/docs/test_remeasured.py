@@ -131,7 +131,7 @@ def test_movies_are_compared_with_each_kind_of_windows(claims: Any) -> None:
     assert found[2].verdict == "edge-based no, with springs yes"
     assert found[3].verdict == "no"  # ours has a peak, too
     assert found[4].here.startswith("melanoma: the field folds in 2 % of the cell")
-    assert found[4].verdict == "folds: yes"
+    assert found[4].verdict == "folds in more than 1 %: yes"
 
 
 def test_registered_windows_are_compared_by_displacement_and_correlation(claims: Any) -> None:
