@@ -50,7 +50,8 @@ def numbers_of(seed: int, kind: str) -> pd.DataFrame:
         values, frame_interval_s=INTERVAL_S, edge_length_um=EDGE_UM, surrogates=SURROGATES, seed=seed
     )
     row = {name: float(found[name]) for name in ("order", "p", "period_s", "direction", "persistence_s")}
-    row |= {"speed_um_s": float(found["speed_um_s"]), "cell": 0, "layer": np.nan, "status": "ok"}
+    row |= {"speed_um_s": float(found["speed_um_s"]), "kind": found["kind"].item()}
+    row |= {"cell": 0, "layer": np.nan, "status": "ok"}
     cells = pd.DataFrame([row])
     return wave_numbers(cells, cells[["cell", "layer", "order", "p"]])
 
