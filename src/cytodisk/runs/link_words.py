@@ -55,11 +55,15 @@ def effect_words(source: str, target: str, effect: float, turns: int = 0) -> str
     source, target : str
     effect : float
     turns : int
-        The sign at first, where it changes with the lag; else 0.
+        The sign at first, where it changes with the lag; else 0. Coefficients stand beside the target's own
+        past: where that goes on by itself, what only ends has the other sign, too.
     """
     more = (turns or effect) > 0
-    then = f", later by {_what_follows(target, not more)}" if turns else ""
-    return f"{_begin(source)} is followed by {_what_follows(target, more)}{then}"
+    words = f"{_begin(source)} is followed by {_what_follows(target, more)}"
+    if not turns:
+        return words
+    other = _what_follows(target, not more)
+    return f"{words} at first (later coefficients have the other sign: it ends, or turns to {other})"
 
 
 def _begin(source: str) -> str:

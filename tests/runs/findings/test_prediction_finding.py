@@ -15,6 +15,8 @@ from made_study import MadeStudy, made_study, predicting_activity
 
 PAIR = ("Rac1", "velocity")
 
+AT_FIRST = "at first (later coefficients have the other sign: it ends, or turns to"
+
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory: pytest.TempPathFactory) -> MadeStudy:
@@ -190,14 +192,14 @@ def test_words() -> None:
     assert effect_words("Rac1", "velocity", -0.1) == "more Rac1 is followed by retraction"
     assert effect_words("Rac1", "RhoA", 0.1) == "more Rac1 is followed by more RhoA"
     turned = effect_words("velocity", "Rac1", 0.1, turns=-1)
-    assert turned == "protrusion is followed by less Rac1, later by more Rac1"
+    assert turned == f"protrusion is followed by less Rac1 {AT_FIRST} more Rac1)"
 
 
 @pytest.mark.parametrize(
     ("coefficients", "words"),
     [
-        ((-0.15, 0.16), "more Rac1 is followed by retraction, later by protrusion"),
-        ((0.15, -0.08), "more Rac1 is followed by protrusion, later by retraction"),
+        ((-0.15, 0.16), f"more Rac1 is followed by retraction {AT_FIRST} protrusion)"),
+        ((0.15, -0.08), f"more Rac1 is followed by protrusion {AT_FIRST} retraction)"),
         ((0.15, -0.02), "more Rac1 is followed by protrusion"),
     ],
 )
