@@ -13,6 +13,7 @@ those below, by `--first`). Prints a Markdown table for each block:
 * failures: what fools it, or hides what is there.
 * direction: noise of measurement, and two true directions: what is significant, and what of it is marked as a
   direction that noise alone may make (`weaker_direction`).
+* frames: how many frames r = 0.3 needs, with 24 and 60 sectors, whose neighbours may be alike.
 * ways: other nulls and tests on the same pairs, see `prediction_ways.py`.
 
 With `--results` each pair that is done is kept, and the same command goes on where it was stopped. Ends with
@@ -42,7 +43,15 @@ from stored_trials import StoredTrials
 
 FIRST_SEED = 100_000
 SURROGATES = 99  # p-values of exactly 0.05 and less are then 5 of 100
-PAIRS = {"null": 1000, "one way": 300, "given": 300, "failures": 100, "direction": 100, "ways": 100}
+PAIRS = {
+    "null": 1000,
+    "one way": 300,
+    "given": 300,
+    "failures": 100,
+    "direction": 100,
+    "frames": 100,
+    "ways": 100,
+}
 NAMES = ("p", "gain", "gain_reversed", "gain_excess", "effect")
 _ALPHA = 0.05
 _AHEAD = 16  # pairs a process takes at once
@@ -111,6 +120,8 @@ def rows(block: str, trials: Sequence[Trial]) -> Iterator[list[str | Figure]]:
         count = str(len(of_case))
         if block == "ways":
             yield [case, count, *(share(way) for way in WAYS)]
+        elif block == "frames":
+            yield [case, count, share("p")]
         elif block == "null":
             yield [case, count, share("p", 0.03, 0.07)]
         elif block == "direction":
@@ -147,6 +158,7 @@ HEADS = {
     "given": ["pairs", "p ≤ 0.05 (≤ 0.07)"],
     "failures": ["pairs", "p ≤ 0.05", "backwards", "gain larger forwards", "gain"],
     "direction": ["pairs", "forwards", "and marked", "backwards", "and marked"],
+    "frames": ["pairs", "p ≤ 0.05"],
     "ways": ["pairs", *WAYS],
 }
 

@@ -10,6 +10,7 @@ import cytodisk as cd
 from cytodisk.arrays import FloatArray
 
 FRAMES, SECTORS = 150, 60
+FRAME_COUNTS = (20, 30, 45, 60, 90, 120)
 KINDS = ("white", "ar1", "slow", "smooth", "oscillating")
 _SOURCE_APART = 500_000  # between seeds of a pair whose signals are made separately
 
@@ -208,11 +209,26 @@ def _direction() -> dict[str, Make]:
     return found
 
 
+def _frames() -> dict[str, Make]:
+    """How many frames a link of r = 0.3 needs, and what few of them make of nothing."""
+    found = {}
+    for sectors in (24, 60):
+        for words, alike in (("", {}), (", neighbours alike", ALIKE)):
+            for frames in FRAME_COUNTS:
+                name = f"{frames} frames, {sectors} sectors{words}"
+                found[name] = pair("ar1", frames=frames, sectors=sectors, **alike)
+                found[f"{name}: nothing"] = pair(
+                    "ar1", frames=frames, sectors=sectors, coupling="none", **alike
+                )
+    return found
+
+
 BLOCKS: dict[str, dict[str, Make]] = {
     "null": _null(),
     "one way": _one_way(),
     "given": _given(),
     "failures": _failures(),
     "direction": _direction(),
+    "frames": _frames(),
 }
 """Cases by block and name; what makes signals is looked up by these in each process."""

@@ -149,7 +149,7 @@ def test_gains_of_links_are_those_of_the_tables_in_every_sector(study: Study) ->
     links = pd.DataFrame(
         {"cell": 0, "source": "signal 1", "target": "velocity", "given": "", "layer": [0, 1]}
     )
-    links = links.assign(gain=0.1, gain_excess=[0.02, -0.01], p=[0.05, 0.5])
+    links = links.assign(gain=0.1, gain_excess=[0.02, -0.01], p=[0.05, 0.5], weaker=False)
     cells = pd.DataFrame({"cell": [0, 1], "status": ["ok", "refused"], "reason": ["", "too short"]})
     tables = {"links": links, "cells": cells.assign(surrogates=[19, 0])}
     write_prediction(study.path, ("signal 1", "velocity", ""), tables, PREDICTION_TABLES, {"signals": []})
@@ -170,7 +170,7 @@ def test_waves_have_an_order_by_layer_and_numbers_without_sign(study: Study) -> 
         movie_values(study, 0, "waves")
     layers = pd.DataFrame({"cell": [0], "layer": pd.array([None], "Int64"), "order": [0.4], "p": [0.05]})
     cells = layers.assign(status="ok", reason="", period_s=90.0, persistence_s=300.0)
-    cells = cells.assign(speed_um_s=-0.2, direction=-0.9, p=0.04)
+    cells = cells.assign(speed_um_s=-0.2, direction=-0.9, p=0.04, kind="rotating")
     write_waves(study.path, "velocity", {"cells": cells, "layers": layers}, _COLUMNS, {})
     found = movie_values(study, 0, "waves")
     assert found["compartment"].to_numpy().tolist() == ["edge"]

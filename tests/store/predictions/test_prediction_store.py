@@ -7,7 +7,9 @@ import pyarrow as pa
 import pytest
 
 from cytodisk.errors import ReadError
+from cytodisk.runs.predict.prediction_columns import PREDICTION_TABLES
 from cytodisk.store.predictions.prediction_store import (
+    Prediction,
     list_predictions,
     prediction_path,
     read_prediction,
@@ -20,9 +22,12 @@ from cytodisk.store.written_files import recorded
 PAIR = ("Rac1", "velocity", "")
 
 
-def write(folder: Path, names: tuple[str, str, str], gain: float = 0.1, csv: bool = False) -> None:
-    table = pd.DataFrame({"cell": [0], "gain": [gain]})
-    table.attrs["units"] = {"cell": "", "gain": "nat"}
+def write(
+    folder: Path, names: tuple[str, str, str], gain: float = 0.1, csv: bool = False, without: str = ""
+) -> None:
+    needed = dict.fromkeys(Prediction.needed["links"], "")
+    table = pd.DataFrame([{"cell": 0} | needed | {"gain": gain}]).drop(columns=without or [])
+    table.attrs["units"] = dict.fromkeys(table, "") | {"gain": "nat"}
     columns = {"links": (CELL, Column("gain", pa.float64(), "nat", "how much"))}
     write_prediction(folder, names, {"links": table}, columns, {"signals": ["Rac1", "velocity"]}, csv)
 
@@ -48,6 +53,15 @@ def test_pairs_networks_and_variants_are_listed_and_opened(tmp_path: Path) -> No
         assert found.links["gain"].tolist() == [0.1]
         assert found.links.attrs["units"]["gain"] == "nat"
     assert prediction_path(tmp_path, "network", "velocity") != prediction_path(tmp_path, name="velocity")
+
+
+def test_a_table_of_an_earlier_version_says_to_predict_again(tmp_path: Path) -> None:
+    assert {*Prediction.needed} <= {*PREDICTION_TABLES}
+    for name, columns in Prediction.needed.items():
+        assert {*columns} <= {column.name for column in PREDICTION_TABLES[name]}
+    write(tmp_path, PAIR, without="weaker")
+    with pytest.raises(ReadError, match=r"column weaker is missing, .*: run cytodisk predict again"):
+        _ = read_prediction(tmp_path, *PAIR).links
 
 
 def test_a_prediction_is_replaced_with_its_csv(tmp_path: Path) -> None:

@@ -32,7 +32,8 @@ class PopulationParameters(ComparisonParameters):
     summary: MovieSummary = parameter(
         "mean",
         "What a cell of a movie contributes: mean, sd, velocity, peak_correlation, lag, around_events, gain, "
-        "gain_score or waves; a cell of an image contributes its windows as they are.",
+        "gain_score or waves; a cell of an image contributes its windows as they are. Conditions are "
+        "compared; whether gains or waves are above 0 is tested by cytodisk predict BATCH and waves BATCH.",
     )
     normalise: Normalisation = parameter(
         "none", "What each cell's values are divided by, or relative to, before cells are compared."

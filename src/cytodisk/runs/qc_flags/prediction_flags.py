@@ -114,7 +114,8 @@ def few_frames(study: Study) -> Iterator[QCFlag]:
         yield QCFlag(
             "few frames",
             f"{counted(len(places), 'prediction')} of fewer than {SURE_FRAMES} frames",
-            "A link of usual strength is mostly missed in so few frames: that nothing was found says little.",
+            "With 24 sectors whose neighbours are alike, a link of r = 0.3 is found in half of the cells of "
+            "45 frames, and in 9 of 10 of 90 frames: that nothing was found says little.",
             "Pool cells: cytodisk predict on a batch, or the table pooled of a study of several cells.",
             tuple(places),
         )

@@ -14,7 +14,7 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from cytodisk.errors import StudyError
+from cytodisk.errors import ReadError, StudyError
 from cytodisk.files import flush, make_folder, temporary_name
 from cytodisk.reading_files import checked, json_of, reading_file, text_of
 from cytodisk.store.columns_file import write_columns
@@ -44,12 +44,15 @@ class DerivedFolder:
         The command that writes such a folder.
     may_be_empty : tuple of str
         Keys that rows of its tables can do without, as the layer in what is told of the edge.
+    needed : dict of str to tuple of str
+        Columns by table that readers ask for, which a table of an earlier version may lack.
     """
 
     path: Path
     settings: dict[str, Any]
     command: ClassVar[str]
     may_be_empty: ClassVar[tuple[str, ...]] = ()
+    needed: ClassVar[Mapping[str, tuple[str, ...]]] = {}
 
     def _optional(self, name: str) -> pd.DataFrame | None:
         return self._table(name) if (self.path / f"{name}.parquet").exists() else None
@@ -59,7 +62,13 @@ class DerivedFolder:
         columns = tuple(Column(column, pa.type_for_alias(kind), "", "") for column, kind in told.items())
         file = self.path / f"{name}.parquet"
         how: Any = {"remedy": remedy(self.command), "finite": False, "may_be_empty": self.may_be_empty}
-        return read_checked(file, columns, **how)
+        table = read_checked(file, columns, **how)
+        if missing := [one for one in self.needed.get(name, ()) if one not in table]:
+            raise ReadError(
+                f"{file}: column {missing[0]} is missing, which an earlier cytodisk did not write: "
+                f"run {self.command} again"
+            )
+        return table
 
 
 def remedy(command: str) -> str:

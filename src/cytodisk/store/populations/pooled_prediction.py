@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -40,6 +41,7 @@ class PooledPrediction(PooledFolder):
     name: str
     settings: dict[str, Any]
     command: ClassVar[str] = "cytodisk predict"
+    needed: ClassVar[Mapping[str, tuple[str, ...]]] = {"pooled": ("weaker",)}
 
     def __repr__(self) -> str:
         what = titled_prediction(self.source, self.target, self.name)

@@ -50,6 +50,7 @@ class Prediction(DerivedFolder):
     name: str
     settings: dict[str, Any]
     command: ClassVar[str] = _COMMAND
+    needed: ClassVar[Mapping[str, tuple[str, ...]]] = {"links": ("weaker",)}
 
     def __repr__(self) -> str:
         return f"<Prediction {self.path}: {titled_prediction(self.source, self.target, self.name)}>"
