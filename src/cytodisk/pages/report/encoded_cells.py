@@ -133,14 +133,19 @@ class MovieCells:
 
 
 def _findings(first: Finding, others: Sequence[dict[str, Any]]) -> list[str]:
-    """Sentences of the page: those of correlations and motion, and the first of predictions and waves.
+    """Sentences of the page: those of correlations and motion, and the head of predictions and waves.
 
     What was found beyond doubt comes first.
     """
     told = [one for one in others if one["finding"]]
     before = [one for one in told if one["kind"] == "found" != first.kind]
     after = [one for one in told if one not in before]
-    return [*(one["finding"][0] for one in before), *first.sentences, *(one["finding"][0] for one in after)]
+    return [*_heads(before), *first.sentences, *_heads(after)]
+
+
+def _heads(told: Sequence[dict[str, Any]]) -> list[str]:
+    """What was found, without what was given or what it is measured by."""
+    return [words for one in told for words in one["finding"][: one["head"]]]
 
 
 def _shifted(progress: Progress | None, before: int, whole: int) -> Progress | None:

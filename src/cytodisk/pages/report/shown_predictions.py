@@ -59,6 +59,7 @@ def _prediction(cell: ShownCell, found: Prediction, flagged: tuple[str, ...]) ->
     return {
         "kind": "" if finding is None else finding.kind,
         "finding": [] if finding is None else list(finding.sentences),
+        "head": 1 if found.is_network else 2,  # a pair: one direction, and the other
         "signals": list(dict.fromkeys([*map(str, links["source"]), *map(str, links["target"])])),
         "names": {name: shown_name(name, _LONGEST_NAME) for name in {*links["source"], *links["target"]}},
         "links": [_link(cell, str(source), str(target), rows) for (source, target), rows in groups],

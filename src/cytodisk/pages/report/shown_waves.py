@@ -66,6 +66,7 @@ def _waves(cell: ShownCell, found: Waves, flagged: tuple[str, ...]) -> tuple[dic
     return {
         "kind": "" if finding is None else finding.kind,
         "finding": [] if finding is None else list(finding.sentences),
+        "head": 1,
         "signal": shown_name(found.signal, _LONGEST_NAME),
         "edge": of_edge,
         "channel": cell.channels.index(found.signal) if found.signal in cell.channels else None,
