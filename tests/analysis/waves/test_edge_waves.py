@@ -135,6 +135,7 @@ def test_phase_is_that_of_the_wave() -> None:
         (np.ones(40), 1.0, r"dims \(time, sector\), got an array of shape \(40,\)"),
         (np.eye(40), None, "pass the seconds between frames"),
         (np.full((40, 8), np.inf), 1.0, "finite"),
+        (np.where(np.arange(8) < 3, np.arange(320.0).reshape(40, 8), np.nan), 1.0, "in 3 of 8 sectors"),
         (np.where(np.eye(40) > 0, 1.0, np.nan), 1.0, "no frame in which half of the 40 sectors have one"),
     ],
 )

@@ -234,6 +234,22 @@ def check_shown(series: EdgeSeries, how: WaveSearchParameters) -> tuple[float, f
     return shortest, longest
 
 
+def check_around(series: EdgeSeries) -> None:
+    """Refuses values in so few sectors that what goes around the cell is not seen.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than half of the sectors have values.
+    """
+    sectors, ever = series.values.shape[1], int(np.isfinite(series.values).any(axis=0).sum())
+    if 2 * ever < sectors:
+        raise ParameterError(
+            f"values are there in {ever} of {sectors} sectors: what goes around the cell is not "
+            "seen in less than half of it; pass a movie with more of the edge"
+        )
+
+
 def _smallest(given: FloatArray) -> str:
     """The smallest of what was given in words, or inf where that is among it."""
     known = given[~np.isnan(given)]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cytodisk.analysis.waves.edge_modes import highest_mode, mode_weights, modes_of
-from cytodisk.analysis.waves.edge_series import EdgeSeries, check_shown
+from cytodisk.analysis.waves.edge_series import EdgeSeries, check_around, check_shown
 from cytodisk.analysis.waves.mode_spectrum import Bands, bands, refined_frequency, wave_cells
 from cytodisk.analysis.waves.wave_background import Background, background, edge_groups, wave_scores
 from cytodisk.analysis.waves.wave_surrogates import WaveNull
@@ -68,11 +68,12 @@ class WaveSearch:
     Raises
     ------
     ParameterError
-        As for `check_shown`.
+        As for `check_shown` and `check_around`.
     """
 
     def __init__(self, series: EdgeSeries, how: WaveSearchParameters) -> None:
         self.periods = check_shown(series, how)
+        check_around(series)
         self.series = series
         used = series.used
         self.values, self.seconds = series.values[used], series.seconds[used]
@@ -131,7 +132,7 @@ def strongest_wave(
     Raises
     ------
     ParameterError
-        As for `check_shown`.
+        As for `check_shown` and `check_around`.
     """
     search = WaveSearch(series, how)
     power = search.power(search.values[:, :, None])
