@@ -85,9 +85,7 @@ def shape_claims(found: dict[str, Any]) -> Iterator[Claim]:
 def movie_claims(found: dict[str, Any]) -> Iterator[Claim]:
     """Section 4.2 and Fig. 4."""
     table = summaries(found["movies"])
-    by_method = {
-        method: table[table["method"] == method].set_index("movie") for method in ("newton", *BESIDE)
-    }
+    by_method = {one: table[table["method"] == one].set_index("movie") for one in ("newton", *BESIDE)}
     ours = by_method["newton"]
     names = list(ours.index)
     others = {name: by_method[method] for method, name in BESIDE.items()}
