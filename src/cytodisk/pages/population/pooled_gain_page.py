@@ -13,17 +13,16 @@ from matplotlib.lines import Line2D
 
 from cytodisk.pages.drawn_correlation import VELOCITY_NAMES
 from cytodisk.pages.drawn_movie import LEFT_MM
-from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
+from cytodisk.pages.population.pooled_figure import save_pooled
 from cytodisk.pages.population.pooled_heading import pooled_heading
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.correlation.curve_key import PARTIAL_LOOK
 from cytodisk.plot.population.condition_looks import condition_colours
 from cytodisk.plot.population.condition_profiles import condition_key, draw_condition_profiles
-from cytodisk.plot.style import LINE_COLOUR, SINGLE_COLUMN_MM, WIDE_MM, paper_style
+from cytodisk.plot.style import LINE_COLOUR, SINGLE_COLUMN_MM, WIDE_MM
 from cytodisk.population.significance import LEVEL
 from cytodisk.runs.channel_names import shortened, shown_name
 from cytodisk.runs.population.predictions.gain_words import predicts
-from cytodisk.store.figures_folder import drawing
 from cytodisk.store.populations.pooled_prediction import PooledPrediction
 
 FIGURE = "gains"
@@ -66,11 +65,7 @@ def write_pooled_gains(pooled: PooledPrediction, *, formats: Sequence[str] = ("p
     >>> pooled = cd.open_pooled_prediction("all", "Rac1", "velocity")  # doctest: +SKIP
     >>> cd.pages.write_pooled_gains(pooled)  # doctest: +SKIP
     """
-    batch = pooled.path.parents[1]
-    chosen = chosen_formats(formats)
-    names = [f"{FIGURE}.{kind}" for kind in chosen]
-    with drawing(batch, *names, of=pooled.path) as folder, paper_style():
-        return save_in_formats(gain_page(pooled), folder, FIGURE, chosen)
+    return save_pooled(pooled.path, FIGURE, lambda: gain_page(pooled), formats)
 
 
 def gain_page(pooled: PooledPrediction) -> Sheet:

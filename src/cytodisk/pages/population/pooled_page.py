@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 
 from cytodisk.pages.drawn_correlation import VELOCITY_NAMES, Heading
 from cytodisk.pages.drawn_movie import LEFT_MM
-from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
+from cytodisk.pages.population.pooled_figure import save_pooled
 from cytodisk.pages.sheet import Sheet, broken_lines
 from cytodisk.plot.correlation.curve_key import PARTIAL_LOOK
 from cytodisk.plot.correlation.lag_axis import LagUnit
@@ -22,10 +22,9 @@ from cytodisk.plot.layer_looks import layer_word, shown_layers
 from cytodisk.plot.population.condition_looks import condition_colours
 from cytodisk.plot.population.condition_profiles import condition_key
 from cytodisk.plot.population.pooled_curve_lines import draw_pooled_curves
-from cytodisk.plot.style import LINE_COLOUR, SINGLE_COLUMN_MM, paper_style
+from cytodisk.plot.style import LINE_COLOUR, SINGLE_COLUMN_MM
 from cytodisk.population.significance import LEVEL
 from cytodisk.runs.channel_names import shortened, shown_name
-from cytodisk.store.figures_folder import drawing
 from cytodisk.store.populations.pooled_correlation import PooledCorrelation
 
 FIGURE = "curves"
@@ -77,11 +76,7 @@ def write_pooled_figure(pooled: PooledCorrelation, *, formats: Sequence[str] = (
     >>> [path.name for path in cd.pages.write_pooled_figure(pooled)]
     ['curves.png']
     """
-    batch = pooled.path.parents[1]
-    chosen = chosen_formats(formats)
-    names = [f"{FIGURE}.{kind}" for kind in chosen]
-    with drawing(batch, *names, of=pooled.path) as folder, paper_style():
-        return save_in_formats(pooled_page(pooled), folder, FIGURE, chosen)
+    return save_pooled(pooled.path, FIGURE, lambda: pooled_page(pooled), formats)
 
 
 def pooled_page(pooled: PooledCorrelation) -> Sheet:

@@ -10,19 +10,18 @@ import pandas as pd
 
 from cytodisk.pages.drawn_correlation import VELOCITY_NAMES
 from cytodisk.pages.drawn_movie import LEFT_MM
-from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
 from cytodisk.pages.population.drawn_population import in_two_lines
+from cytodisk.pages.population.pooled_figure import save_pooled
 from cytodisk.pages.population.pooled_heading import pooled_heading
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.population.condition_looks import are_shared
 from cytodisk.plot.population.experiment_key import experiment_key
 from cytodisk.plot.population.super_plot import draw_super_plot
-from cytodisk.plot.style import SINGLE_COLUMN_MM, WIDE_MM, paper_style
+from cytodisk.plot.style import SINGLE_COLUMN_MM, WIDE_MM
 from cytodisk.plot.units import with_unit
 from cytodisk.runs.channel_names import shown_name
 from cytodisk.runs.population.movies.wave_summaries import WAVE_UNITS
 from cytodisk.runs.population.wave_numbers.pooled_wave_numbers import ORDER
-from cytodisk.store.figures_folder import drawing
 from cytodisk.store.populations.pooled_waves import PooledWaves
 
 FIGURE = "waves"
@@ -68,11 +67,7 @@ def write_pooled_waves(pooled: PooledWaves, *, formats: Sequence[str] = ("png",)
     >>> pooled = cd.open_pooled_waves("all")  # doctest: +SKIP
     >>> cd.pages.write_pooled_waves(pooled)  # doctest: +SKIP
     """
-    batch = pooled.path.parents[1]
-    chosen = chosen_formats(formats)
-    names = [f"{FIGURE}.{kind}" for kind in chosen]
-    with drawing(batch, *names, of=pooled.path) as folder, paper_style():
-        return save_in_formats(wave_page(pooled), folder, FIGURE, chosen)
+    return save_pooled(pooled.path, FIGURE, lambda: wave_page(pooled), formats)
 
 
 def wave_page(pooled: PooledWaves) -> Sheet:
